@@ -1,0 +1,18 @@
+//! quadrel: curved all-quadrilateral meshes of planar domains for spectral element methods.
+#![deny(unsafe_code)]
+
+pub mod base_mesh;
+pub mod cross_field;
+pub mod domain;
+pub mod error;
+pub mod layout;
+pub mod mesh;
+pub mod numerics;
+pub mod options;
+pub mod progress;
+pub mod separatrices;
+pub mod singularities;
+pub mod stages;
+
+pub use error::{Error, Result};
+pub use options::Options;

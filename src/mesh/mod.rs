@@ -1,0 +1,48 @@
+//! Step 9 of the paper: the meshes, their quality and the proof that they are valid.
+//!
+//! [`QuadMesh`] is the mesh that refinement and smoothing work on: vertices, quads, and one polynomial
+//! curve for each edge, shared by both sides. [`HighOrderMesh`] is the result: order-N elements with
+//! all their nodes, in the caller's frame, proven valid.
+
+mod quad_mesh;
+
+pub use quad_mesh::{Edge, QuadMesh, Vertex};
+
+use crate::numerics::Point;
+
+/// An edge of the finished mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshEdge {
+    pub vertices: [u32; 2],
+    /// The elements to its left and right; `NONE` outside the domain.
+    pub elements: [u32; 2],
+    /// The boundary's name, an index into [`HighOrderMesh::boundary_names`]; `NONE` inside.
+    pub boundary: u32,
+    /// Boundary edges: the loop they lie on; `NONE` inside.
+    pub loop_index: u32,
+    /// Boundary edges: the loop's segment and its parameter at each end.
+    pub segments: [u32; 2],
+    pub parameters: [f64; 2],
+    /// Boundary edges: the error in the chosen norm, in the caller's unit; else 0.
+    pub error: f64,
+}
+
+/// The finished mesh, immutable, in the caller's frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HighOrderMesh {
+    pub order: usize,
+    /// Gauss-Lobatto points in [-1, 1], N + 1 of them.
+    pub reference_nodes: Vec<f64>,
+    pub vertices: Vec<Point>,
+    /// Corners counter-clockwise; side s joins corner s to corner (s + 1) % 4.
+    pub elements: Vec<[u32; 4]>,
+    /// `[element][j][i]`, (N + 1)² points each, i along side 0.
+    pub nodes: Vec<Point>,
+    /// Which layout region each element comes from.
+    pub blocks: Vec<u32>,
+    pub edges: Vec<MeshEdge>,
+    pub element_edges: Vec<[u32; 4]>,
+    pub boundary_names: Vec<String>,
+    /// Minimum over each element of det J / (|x_ξ| |x_η|).
+    pub scaled_jacobian: Vec<f64>,
+}

@@ -1,0 +1,24 @@
+//! Numerical tools that know nothing of meshes: points, Gauss-Lobatto nodes, quadrature,
+//! interpolation, Bernstein forms, transfinite maps, the sparse solver and every named tolerance.
+
+pub mod tolerances;
+
+/// A point of the plane.
+pub type Point = nalgebra::Point2<f64>;
+/// A displacement or direction in the plane.
+pub type Vector = nalgebra::Vector2<f64>;
+
+/// "No such index" in index arrays (neighbours, elements beside an edge).
+pub const NONE: u32 = u32::MAX;
+
+/// The z component of the cross product `a × b`.
+#[inline]
+pub fn cross(a: Vector, b: Vector) -> f64 {
+    a.x * b.y - a.y * b.x
+}
+
+/// `v` turned by 90° counter-clockwise.
+#[inline]
+pub fn left_normal(v: Vector) -> Vector {
+    Vector::new(-v.y, v.x)
+}

@@ -1,0 +1,124 @@
+//! What the caller may choose; the defaults need no tuning.
+
+use crate::error::{Error, Result};
+use crate::progress::Progress;
+
+/// The norm in which a boundary edge is compared with the exact curve (`docs` of
+/// [`crate::mesh`] define each).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Norm {
+    /// (∫ |x − x_N|² ds)^½; unit length^{3/2}.
+    #[default]
+    L2,
+    /// L2 with the derivative, weighted by the edge's length; unit length^{3/2}.
+    H1,
+    /// The largest distance; unit length.
+    Max,
+}
+
+/// The boundary tolerance, per boundary edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tolerance {
+    /// In the norm's own unit.
+    Absolute(f64),
+    /// For the domain scaled to a bounding-box diagonal of 1.
+    Relative(f64),
+}
+
+/// Which cross field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FieldMethod {
+    /// Laplace, then diffuse-and-renormalise steps, which keep singularities apart.
+    #[default]
+    Diffused,
+    /// Laplace alone: the paper's field.
+    Harmonic,
+}
+
+/// How boundary edges are divided until the tolerance holds (step 7).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Subdivision {
+    /// Vertices are placed where the error is the same on all edges of a chain.
+    #[default]
+    EqualError,
+    /// The paper's rule: halve at the middle until the norm holds.
+    Halving,
+}
+
+/// Everything that steers [`crate::generate`].
+#[derive(Clone)]
+pub struct Options {
+    /// Polynomial order N of the elements, 1 to 32.
+    pub order: usize,
+    /// Boundary tolerance, per boundary edge.
+    pub tolerance: Tolerance,
+    /// Its norm.
+    pub norm: Norm,
+    /// Which cross field (step 2).
+    pub field: FieldMethod,
+    /// How boundary edges are divided (step 7).
+    pub subdivision: Subdivision,
+    /// Largest wanted element size, in the caller's unit; `None`: no limit.
+    pub max_element_size: Option<f64>,
+    /// Wanted size of the base triangles, in the caller's unit; `None`: automatic.
+    pub base_mesh_size: Option<f64>,
+    /// Scaled Jacobian below which coarsening never goes, in (0, 1), as a share of the domain's
+    /// ceiling.
+    pub quality_floor: f64,
+    /// Most elements allowed.
+    pub max_elements: usize,
+    /// Called now and then with the stage and the share done; it can cancel.
+    pub progress: Progress,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options {
+            order: 5,
+            tolerance: Tolerance::Relative(1e-5),
+            norm: Norm::L2,
+            field: FieldMethod::Diffused,
+            subdivision: Subdivision::EqualError,
+            max_element_size: None,
+            base_mesh_size: None,
+            quality_floor: 0.45,
+            max_elements: 1_000_000,
+            progress: Progress::default(),
+        }
+    }
+}
+
+impl Options {
+    /// Largest order accepted.
+    pub const MAX_ORDER: usize = 32;
+
+    /// Refuses values out of range, naming the option.
+    pub fn check(&self) -> Result<()> {
+        let bad = |what, value: f64, allowed| {
+            Err(Error::InvalidArgument { what, value: value.to_string(), allowed })
+        };
+        if self.order < 1 || self.order > Self::MAX_ORDER {
+            return bad("the polynomial order", self.order as f64, "1 to 32");
+        }
+        let (Tolerance::Absolute(e) | Tolerance::Relative(e)) = self.tolerance;
+        if !(e > 0.0 && e.is_finite()) {
+            return bad("the tolerance", e, "a finite number above 0");
+        }
+        if !(self.quality_floor > 0.0 && self.quality_floor < 1.0) {
+            return bad("the quality floor", self.quality_floor, "a number between 0 and 1");
+        }
+        for (what, size) in
+            [("the largest element size", self.max_element_size), ("the base mesh size", self.base_mesh_size)]
+        {
+            if let Some(h) = size {
+                if !(h > 0.0 && h.is_finite()) {
+                    return bad(what, h, "a finite length above 0");
+                }
+            }
+        }
+        if self.max_elements == 0 {
+            return bad("the element limit", 0.0, "at least 1");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,42 @@
+//! What each stage leaves behind: for pictures, statistics and diagnosis. Kept also on failure.
+
+use crate::base_mesh::Triangulation;
+use crate::cross_field::CrossField;
+use crate::domain::Boundary;
+use crate::layout::{BlockLayout, QuadLayout};
+use crate::progress::Stage;
+use crate::separatrices::Separatrix;
+use crate::singularities::{CornerFan, Singularity};
+
+/// One round of steps 7 and 8: what subdivision, smoothing and coarsening left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Round {
+    /// What the round did, in one or two words.
+    pub action: &'static str,
+    pub elements: usize,
+    /// Least scaled Jacobian; negative: inverted.
+    pub scaled_jacobian: f64,
+    /// Largest boundary error divided by the tolerance.
+    pub boundary_error: f64,
+}
+
+/// Results of the stages, in the canonical frame; `None` or empty where generation did not come that far.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Stages {
+    pub boundary: Option<Boundary>,
+    pub triangulation: Option<Triangulation>,
+    pub cross_field: Option<CrossField>,
+    pub singularities: Vec<Singularity>,
+    pub corners: Vec<CornerFan>,
+    pub separatrices: Vec<Separatrix>,
+    pub block_layout: Option<BlockLayout>,
+    pub quad_layout: Option<QuadLayout>,
+    pub rounds: Vec<Round>,
+    /// Seconds spent in each stage, in the order of [`Stage::ALL`].
+    pub seconds: [f64; 9],
+    /// The last stage that finished.
+    pub reached: Option<Stage>,
+    /// 0 none, 1 the paper's rules, 2 a pattern, 3 centroid stars.
+    pub fallback: u8,
+    pub warnings: Vec<String>,
+}
