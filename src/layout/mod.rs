@@ -3,6 +3,8 @@
 //! *In:* a [`BlockLayout`]: a T-mesh of regions, traced or drawn by hand.
 //! *Out:* a [`QuadLayout`]: conforming, every region four-sided.
 
+pub mod t_mesh;
+
 use crate::domain::{Place, Span};
 use crate::numerics::Point;
 

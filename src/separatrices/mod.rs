@@ -14,12 +14,12 @@ mod tracer;
 
 use crate::base_mesh::Triangulation;
 use crate::cross_field::CrossField;
-use crate::domain::{Boundary, Place};
+use crate::domain::{Boundary, BoundaryPoint, Place};
 use crate::error::Result;
 use crate::numerics::Point;
 use crate::singularities::{CornerFan, Singularity};
 
-/// Traces all separatrices.
+/// Traces all separatrices, and after them a ray from each of the boundary points `seeds`.
 ///
 /// # Errors
 /// [`Error::Separatrix`](crate::Error::Separatrix) with the place, if a trace cannot go on or winds without end.
@@ -29,11 +29,16 @@ pub fn trace(
     boundary: &Boundary,
     singularities: &[Singularity],
     corners: &[CornerFan],
+    seeds: &[BoundaryPoint],
 ) -> Result<Vec<Separatrix>> {
     let mut tracer = tracer::Tracer::new(mesh, field, boundary, singularities, corners);
     tracer.launch_all()?;
     tracer.run()?;
     tracer.connect_loops()?;
+    for &seed in seeds {
+        tracer.launch_seed_at(seed)?;
+        tracer.run()?;
+    }
     Ok(tracer.finish())
 }
 

@@ -8,7 +8,7 @@ use super::stream::{before, Branch, Position, Stream};
 use super::{Separatrix, Stop, TraceEnd};
 use crate::base_mesh::Triangulation;
 use crate::cross_field::CrossField;
-use crate::domain::{Boundary, Place};
+use crate::domain::{Boundary, BoundaryPoint, Place};
 use crate::error::{Error, Result};
 use crate::numerics::{cross, Point, NONE};
 use crate::singularities::{CornerFan, Singularity};
@@ -269,6 +269,22 @@ impl<'a> Tracer<'a> {
         Ok(())
     }
 
+    /// A ray straight into the domain from the border edge that holds `seed`.
+    pub fn launch_seed_at(&mut self, seed: BoundaryPoint) -> Result<()> {
+        let mesh = self.stream.mesh;
+        let l = self.boundary.chains[seed.chain as usize].loop_index;
+        let cycle = &mesh.loops[l as usize];
+        let edge = (0..cycle.len()).find(|&i| {
+            let [a, b] = [cycle[i], cycle[(i + 1) % cycle.len()]].map(|v| mesh.vertices[v as usize].place);
+            self.boundary.span(a, b).is_some_and(|span| {
+                let length = self.boundary.chains[span.chain as usize].length;
+                let inside = |s: f64| span.start <= s && s < span.end;
+                span.chain == seed.chain && (inside(seed.s) || inside(seed.s + length))
+            })
+        });
+        self.launch_seed(l, edge.unwrap_or(0) as u32)
+    }
+
     /// The end of a trace at `at` on the border edge of triangle `t`.
     fn border_end(&self, t: u32, at: Position) -> TraceEnd {
         let mesh = self.stream.mesh;
@@ -278,7 +294,7 @@ impl<'a> Tracer<'a> {
         let place = self.boundary.span(pa, pb).map(|span| {
             let chain = &self.boundary.chains[span.chain as usize];
             let s = chain.wrap(span.start + at.share * (span.end - span.start));
-            crate::domain::BoundaryPoint { chain: span.chain, s }
+            BoundaryPoint { chain: span.chain, s }
         });
         let place = place.map_or(Place::Interior, Place::Boundary);
         TraceEnd::Border { loop_index, edge, share: at.share, place }
