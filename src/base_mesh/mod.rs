@@ -3,6 +3,10 @@
 //! *In:* the [`Boundary`](crate::domain::Boundary) and, after a failed check, places to refine.
 //! *Out:* a [`Triangulation`] whose border is a polygon inscribed in the boundary.
 
+mod size_field;
+
+pub use size_field::SizeField;
+
 use crate::domain::Place;
 use crate::numerics::Point;
 
