@@ -4,8 +4,10 @@
 //! curve for each edge, shared by both sides. [`HighOrderMesh`] is the result: order-N elements with
 //! all their nodes, in the caller's frame, proven valid.
 
+mod boundary_error;
 mod quad_mesh;
 
+pub use boundary_error::{BoundaryError, BoundaryTolerance};
 pub use quad_mesh::{Edge, QuadMesh, Vertex};
 
 use crate::numerics::Point;

@@ -1,7 +1,16 @@
 //! Numerical tools that know nothing of meshes: points, Gauss-Lobatto nodes, quadrature,
 //! interpolation, Bernstein forms, transfinite maps, the sparse solver and every named tolerance.
 
+pub mod gauss_lobatto;
+pub mod interpolation;
+pub mod quadrature;
 pub mod tolerances;
+pub mod transfinite;
+
+pub use gauss_lobatto::{legendre, GaussLobatto};
+pub use interpolation::Interpolation;
+pub use quadrature::GaussLegendre;
+pub use transfinite::coons_map;
 
 /// A point of the plane.
 pub type Point = nalgebra::Point2<f64>;
