@@ -1,6 +1,7 @@
 //! Numerical tools that know nothing of meshes: points, Gauss-Lobatto nodes, quadrature,
 //! interpolation, Bernstein forms, transfinite maps, the sparse solver and every named tolerance.
 
+pub mod sparse;
 pub mod tolerances;
 
 /// A point of the plane.
