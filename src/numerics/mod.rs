@@ -4,6 +4,7 @@
 pub mod gauss_lobatto;
 pub mod interpolation;
 pub mod quadrature;
+pub mod sparse;
 pub mod tolerances;
 pub mod transfinite;
 
