@@ -23,8 +23,10 @@ fn valences(r: &Resolved) -> Vec<u8> {
 fn index_theorem_holds_on_every_shape() {
     for (name, b) in all() {
         for method in [FieldMethod::Diffused, FieldMethod::Harmonic] {
-            let r = resolve(&b, Request::default(), method).unwrap_or_else(|e| panic!("{name} {method:?}: {e}"));
-            check(&r.mesh, &r.singularities, &r.corners).unwrap_or_else(|e| panic!("{name} {method:?}: {e:?}"));
+            let r =
+                resolve(&b, Request::default(), method).unwrap_or_else(|e| panic!("{name} {method:?}: {e}"));
+            check(&r.mesh, &r.singularities, &r.corners)
+                .unwrap_or_else(|e| panic!("{name} {method:?}: {e:?}"));
         }
     }
 }
@@ -48,7 +50,10 @@ fn diffusion_keeps_the_disc_s_singularities_apart() {
     let distance = |method| {
         let b = disc();
         let r = resolve(&b, Request::default(), method).unwrap();
-        assert_eq!(r.singularities.iter().filter(|s| s.valence == 3).count(), 4 + r.singularities.len() / 2 - 2);
+        assert_eq!(
+            r.singularities.iter().filter(|s| s.valence == 3).count(),
+            4 + r.singularities.len() / 2 - 2
+        );
         let mean: f64 = r.singularities.iter().map(|s| s.point.coords.norm()).sum();
         mean / r.singularities.len() as f64 * 8f64.sqrt()
     };

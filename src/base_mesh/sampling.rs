@@ -89,7 +89,8 @@ impl<'a> Sampling<'a> {
             Some(_) => 2,
         };
         let pieces = ((chain.length / size).ceil() as usize).clamp(least, 1 << 22);
-        let at = |i: usize| if i == pieces { chain.length } else { chain.length * (i as f64 / pieces as f64) };
+        let at =
+            |i: usize| if i == pieces { chain.length } else { chain.length * (i as f64 / pieces as f64) };
         chords.extend((0..pieces).map(|i| self.chord(c, at(i), at(i + 1))));
     }
 

@@ -25,7 +25,8 @@ impl Position {
         Position { edge: 2 - self.edge, share: 1.0 - self.share }
     }
 
-    /// How far `self` lies behind `from`, walking counter-clockwise (or clockwise): comparable.
+    /// How far `self` lies behind `from`, walking counter-clockwise (or clockwise): comparable with other
+    /// distances from the same place.
     pub fn distance(self, from: Position, ccw: bool) -> (usize, f64) {
         let (x, p) = if ccw { (self, from) } else { (self.mirrored(), from.mirrored()) };
         let mut edges = (x.edge + 3 - p.edge) % 3;
@@ -230,10 +231,13 @@ impl Stream<'_> {
     ) -> Option<(Position, bool)> {
         let n = ports.len();
         // Port i is the last one at or before `from`, counter-clockwise.
-        let i = (0..n).min_by(|&a, &b| {
-            let (x, y) = (from.distance(ports[a], true), from.distance(ports[b], true));
-            x.0.cmp(&y.0).then(x.1.total_cmp(&y.1))
-        })?;
+        let key = |p: Position| (p.edge, p.share);
+        let last = |below: bool| {
+            (0..n).filter(|&j| !below || key(ports[j]) <= key(from)).max_by(|&a, &b| {
+                ports[a].edge.cmp(&ports[b].edge).then(ports[a].share.total_cmp(&ports[b].share))
+            })
+        };
+        let i = last(true).or_else(|| last(false))?;
         let outward = self.point(triangle, ports[i]) - singular;
         let port_branch = self.branch(triangle, ports[i], outward.y.atan2(outward.x));
         // Branch of `from` on the lift that starts at port i.
