@@ -14,3 +14,8 @@ pub const CORNER_TURN: f64 = 1e-3;
 /// Least change of direction, in radians, at which a boundary point launches separatrices of its
 /// own: below, the lines that pass by are aligned well enough.
 pub const PORT_TURN: f64 = 0.05;
+
+/// Largest difference between the layout regions' areas and the domain's, relative to the domain's area:
+/// traces and base mesh are polygons, so areas agree only roughly; a region counted twice or missing
+/// differs by more.
+pub const LAYOUT_AREA: f64 = 0.05;
