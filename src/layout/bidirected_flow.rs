@@ -94,7 +94,8 @@ struct Scratch {
 impl BidirectedFlow {
     /// Starts from every variable at its rounded target. Equations are 0..`equations`.
     pub fn new(equations: usize, variables: Vec<Variable>) -> Self {
-        let values: Vec<i32> = variables.iter().map(|v| v.lower.max(v.target.round().min(1e6) as i32)).collect();
+        let values: Vec<i32> =
+            variables.iter().map(|v| v.lower.max(v.target.round().min(1e6) as i32)).collect();
         let ground = equations;
         let slot = |end: End| if end.equation == NONE { ground } else { end.equation as usize };
         let mut first = vec![0u32; equations + 2];
@@ -338,11 +339,8 @@ impl BidirectedFlow {
     fn obstruction(states: &[u32]) -> Obstruction {
         let mut sorted = states.to_vec();
         sorted.sort_unstable();
-        let single: Vec<u32> = sorted
-            .iter()
-            .filter(|&&s| sorted.binary_search(&(s ^ 1)).is_err())
-            .map(|&s| s / 2)
-            .collect();
+        let single: Vec<u32> =
+            sorted.iter().filter(|&&s| sorted.binary_search(&(s ^ 1)).is_err()).map(|&s| s / 2).collect();
         let mut equations = if single.is_empty() { sorted.iter().map(|s| s / 2).collect() } else { single };
         equations.dedup();
         Obstruction { equations }
@@ -535,7 +533,8 @@ impl BidirectedFlow {
                 // Labels that rest on a changed variable are worth nothing any more; what
                 // leaves the states at its ends, or at those of its rows, has new costs.
                 for &(a, _) in &steps {
-                    let siblings = self.rows_of[a as usize].iter().flat_map(|&r| &self.rows[r as usize].variables);
+                    let siblings =
+                        self.rows_of[a as usize].iter().flat_map(|&r| &self.rows[r as usize].variables);
                     for &b in siblings.chain([&a]) {
                         for end in self.variables[b as usize].ends {
                             let at = if end.equation == NONE { ground } else { 2 * end.equation as usize };

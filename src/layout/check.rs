@@ -47,7 +47,9 @@ impl BlockLayout {
                 Place::Boundary(p) => {
                     node.kind == NodeKind::Boundary && (p.chain as usize) < boundary.chains.len()
                 }
-                Place::Junction(j) => node.kind == NodeKind::Junction && (j as usize) < boundary.junctions.len(),
+                Place::Junction(j) => {
+                    node.kind == NodeKind::Junction && (j as usize) < boundary.junctions.len()
+                }
             };
             if !fits || !(node.point.x.is_finite() && node.point.y.is_finite()) {
                 return Err((format!("node {i}: its kind and place do not agree"), node.point));
@@ -78,7 +80,10 @@ impl BlockLayout {
                 let next = cycle[(i + 1) % cycle.len()];
                 if self.end(s) != self.start(next) {
                     let at = self.nodes[self.end(s) as usize].point;
-                    return Err((format!("region {r}: arc {} is not followed by arc {}", s.arc, next.arc), at));
+                    return Err((
+                        format!("region {r}: arc {} is not followed by arc {}", s.arc, next.arc),
+                        at,
+                    ));
                 }
             }
         }
@@ -140,7 +145,10 @@ impl QuadLayout {
                 };
                 valence[a as usize] += 1;
                 if (0..i).any(|k| quad[k] == a) || directed.insert([a, b], q as u32).is_some() {
-                    return Err((format!("quad {q} is degenerate or shares an edge with two others"), vertex.point));
+                    return Err((
+                        format!("quad {q} is degenerate or shares an edge with two others"),
+                        vertex.point,
+                    ));
                 }
             }
         }
@@ -187,8 +195,7 @@ impl QuadLayout {
 
     /// Number of quads in the fan of one quad at `v`, walked counter-clockwise from the border if there is one.
     fn fan(&self, v: u32, directed: &BTreeMap<[u32; 2], u32>) -> u32 {
-        let own: Vec<(u32, u32)> =
-            directed.range([v, 0]..=[v, NONE]).map(|(e, &q)| (e[1], q)).collect();
+        let own: Vec<(u32, u32)> = directed.range([v, 0]..=[v, NONE]).map(|(e, &q)| (e[1], q)).collect();
         let before = |q: u32| {
             let quad = self.quads[q as usize];
             let i = quad.iter().position(|&c| c == v).unwrap_or(0);

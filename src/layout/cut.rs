@@ -84,7 +84,13 @@ impl BlockLayout {
 
     /// Divides an arc at `share` of its measure; the first part keeps its index. All sides that it is on are
     /// brought up to date. Returns the new node.
-    pub fn split_arc(&mut self, arc: u32, share: f64, size: &dyn Fn(Point) -> f64, boundary: &Boundary) -> u32 {
+    pub fn split_arc(
+        &mut self,
+        arc: u32,
+        share: f64,
+        size: &dyn Fn(Point) -> f64,
+        boundary: &Boundary,
+    ) -> u32 {
         let old = &self.arcs[arc as usize];
         let measured = Measured::new(&old.points, size);
         let t = measured.parameter(share);

@@ -145,7 +145,8 @@ impl Work<'_> {
             let sum: i32 = members.iter().map(|&v| sign(v)).sum();
             if sum.abs() > 1 {
                 let alike: Vec<u32> = members.iter().copied().filter(|&v| sign(v) * sum > 0).collect();
-                let pair = if alike.len() > 1 { [alike[0], alike[1]] } else { [first, members[members.len() - 1]] };
+                let pair =
+                    if alike.len() > 1 { [alike[0], alike[1]] } else { [first, members[members.len() - 1]] };
                 demands.extend(self.demand(pair[0], pair[1], "two singularities of equal sign would merge"));
             }
         }
@@ -221,7 +222,8 @@ impl Work<'_> {
                     if corners[e] == corners[f] {
                         let why = "a quad's corners would merge";
                         let demand = self.demand(ids[e], ids[f], why);
-                        demands.extend(demand.or_else(|| Some(self.wider(&quad, f, why, self.point(ids[f])))));
+                        demands
+                            .extend(demand.or_else(|| Some(self.wider(&quad, f, why, self.point(ids[f])))));
                     }
                 }
             }
@@ -316,16 +318,20 @@ impl Work<'_> {
             let offset = |p: &BoundaryPoint| {
                 let d = p.s - first.s;
                 let closed = chain.ends.is_none() && p.chain == first.chain;
-                if closed { d - chain.length * (d / chain.length).round() } else { d }
+                if closed {
+                    d - chain.length * (d / chain.length).round()
+                } else {
+                    d
+                }
             };
-            let (low, high) = border.iter().map(offset).fold((0.0, 0.0), |(l, h), d| (f64::min(l, d), f64::max(h, d)));
+            let (low, high) =
+                border.iter().map(offset).fold((0.0, 0.0), |(l, h), d| (f64::min(l, d), f64::max(h, d)));
             let s = chain.wrap(first.s + (low + high) / 2.0);
             let place = Place::Boundary(BoundaryPoint { chain: first.chain, s });
             return LayoutVertex { point: chain.point(s), place };
         }
-        let singular = |m: &&u32| {
-            nodes.get(**m as usize).is_some_and(|n| matches!(n.kind, NodeKind::Singularity(_)))
-        };
+        let singular =
+            |m: &&u32| nodes.get(**m as usize).is_some_and(|n| matches!(n.kind, NodeKind::Singularity(_)));
         let node = |m: &&u32| (**m as usize) < nodes.len();
         let mut chosen: Vec<u32> = members.iter().filter(singular).copied().collect();
         if chosen.is_empty() {
