@@ -99,3 +99,7 @@ pub const LEAST_REFINEMENT: f64 = 1.0 / 12.0;
 /// Corner angle in radians (60°) below which Delaunay refinement cannot enforce its angle bound: base
 /// triangles at such tips are left as they are.
 pub const SHARP_TIP: f64 = std::f64::consts::FRAC_PI_3;
+/// Largest difference between the layout regions' areas and the domain's, relative to the domain's area:
+/// traces and base mesh are polygons, so areas agree only roughly; a region counted twice or missing
+/// differs by more.
+pub const LAYOUT_AREA: f64 = 0.05;
