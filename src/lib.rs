@@ -12,6 +12,7 @@ pub mod options;
 pub mod progress;
 pub mod separatrices;
 pub mod singularities;
+pub mod smooth;
 pub mod stages;
 
 pub use error::{Error, Result};
