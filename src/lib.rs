@@ -13,6 +13,7 @@ pub mod progress;
 pub mod refine;
 pub mod separatrices;
 pub mod singularities;
+pub mod smooth;
 pub mod stages;
 
 pub use error::{Error, Result};
