@@ -332,13 +332,6 @@ impl<'a> Tracer<'a> {
                 s.ports.iter().map(|&(e, share)| Position { edge: e as usize, share }).collect();
             self.stream.through_singular(t, &ports, from, branch, s.point)
         };
-        if passage.is_none() {
-            eprintln!(
-                self.stream.mesh.neighbors[t as usize],
-                self.stream.field.triangles[t as usize],
-                [0, 1, 2].map(|i| self.stream.corner(t, i))
-            );
-        }
         let (to, ccw) = passage.ok_or_else(|| self.failure("the field leads nowhere in a triangle", here))?;
         let family = branch.rem_euclid(2);
         let mut chord = Chord { trace: id, step, from, to, course: Course::Through(ccw), family, end: None };
