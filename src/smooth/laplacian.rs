@@ -11,6 +11,8 @@ use crate::numerics::{Point, Vector, NONE};
 
 /// Share of an element's scaled Jacobian that one move may cost.
 const LEAST_SHARE: f64 = 0.7;
+/// Scaled Jacobians above this count as equally good: a grid of rectangles could not move else.
+const GOOD: f64 = 0.7;
 /// Moves below this share of the shortest edge are not worth measuring.
 const STILL: f64 = 1e-4;
 
@@ -27,7 +29,7 @@ struct Star {
 /// more than a part of its quality, or leaves the tolerance. Edges keep their shape relative to
 /// their chord. Returns the number of moves made.
 pub fn equal_spacing(optimiser: &Optimiser, mesh: &mut QuadMesh, sweeps: usize) -> usize {
-    let worst = optimiser.quality(mesh).min_scaled_jacobian;
+    let worst = optimiser.quality(mesh).min_scaled_jacobian.min(GOOD);
     let mut stars = vec![Star::default(); mesh.vertices.len()];
     for (e, edge) in mesh.edges.iter().enumerate() {
         edge.vertices.iter().for_each(|v| stars[*v as usize].edges.push(e as u32));
@@ -106,7 +108,7 @@ fn relax(optimiser: &Optimiser, mesh: &mut QuadMesh, v: u32, star: &Star, worst:
 
 /// (scaled Jacobian, error ratio) before and after a move.
 fn allowed(now: (f64, f64), then: (f64, f64), worst: f64) -> bool {
-    let shape = then.0 >= now.0 || (then.0 >= worst && then.0 >= LEAST_SHARE * now.0);
+    let shape = then.0 >= now.0 || (then.0 >= worst && then.0 >= LEAST_SHARE * now.0.min(GOOD));
     shape && (then.1 <= 1.0 || then.1 <= now.1)
 }
 
