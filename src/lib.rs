@@ -10,6 +10,7 @@ pub mod mesh;
 pub mod numerics;
 pub mod options;
 pub mod progress;
+pub mod refine;
 pub mod separatrices;
 pub mod singularities;
 pub mod smooth;

@@ -4,8 +4,14 @@
 //! curve for each edge, shared by both sides. [`HighOrderMesh`] is the result: order-N elements with
 //! all their nodes, in the caller's frame, proven valid.
 
+mod bernstein_proof;
+mod boundary_error;
+mod geometry;
 mod quad_mesh;
 
+pub use bernstein_proof::{JacobianProof, Verdict};
+pub use boundary_error::{BoundaryError, BoundaryTolerance};
+pub use geometry::Geometry;
 pub use quad_mesh::{Edge, QuadMesh, Vertex};
 
 use crate::numerics::Point;

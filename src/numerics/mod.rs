@@ -1,6 +1,7 @@
 //! Numerical tools that know nothing of meshes: points, Gauss-Lobatto nodes, quadrature,
 //! interpolation, Bernstein forms, transfinite maps, the sparse solver and every named tolerance.
 
+pub mod bernstein;
 pub mod gauss_lobatto;
 pub mod interpolation;
 pub mod quadrature;

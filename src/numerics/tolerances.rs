@@ -14,3 +14,13 @@ pub const CORNER_TURN: f64 = 1e-3;
 /// Least change of direction, in radians, at which a boundary point launches separatrices of its
 /// own: below, the lines that pass by are aligned well enough.
 pub const PORT_TURN: f64 = 0.05;
+
+/// Shortest boundary edge that subdivision makes, relative to the domain's diagonal: the exact
+/// curves' own rounding (1e-16) is still a millionth of it.
+pub const SHORTEST_EDGE: f64 = 1e-10;
+
+/// Largest share of a closed chain that one edge may cover: a loop has at least three edges.
+pub const LONGEST_LOOP_SHARE: f64 = 1.0 / 3.0;
+
+/// Share of the boundary tolerance that placement aims at, so that vertices may still slide.
+pub const PLACEMENT_MARGIN: f64 = 0.9;

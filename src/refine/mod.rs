@@ -1,0 +1,17 @@
+//! Step 7 of the paper: boundary edges short enough for the tolerance, and no shorter.
+//!
+//! *In:* the chains of the [`Boundary`](crate::domain::Boundary), the tolerance, and how many edges
+//! each chain has. *Out:* where on the chains the vertices lie.
+//!
+//! The tolerance belongs to a chain, not to an edge: a chain needs at least [`least_pieces`] edges, and
+//! [`place_equal_error`] puts the vertices of any larger number where all edges have the same
+//! error (de Boor's equidistribution, *Good approximation by splines with variable knots*, 1973).
+//! [`place_by_halving`] is the paper's own rule (Algorithm 1).
+
+mod halving;
+mod pieces;
+mod placement;
+
+pub use halving::place_by_halving;
+pub use pieces::least_pieces;
+pub use placement::{place_equal_error, Placement};
