@@ -6,7 +6,7 @@ use fixtures::*;
 use quadrel::domain::Place;
 use quadrel::numerics::Vector;
 use quadrel::options::Norm;
-use quadrel::smooth::{BoundaryTolerance, Effort, Optimiser};
+use quadrel::smooth::{equal_spacing, BoundaryTolerance, Effort, Optimiser};
 
 #[test]
 fn disc_of_twelve() {
@@ -62,8 +62,8 @@ fn sizes_of_one_to_a_thousand() {
 #[test]
 fn a_thin_gap_with_coarse_elements() {
     // The hole leaves a gap of 0.01 on one side: straight chords would cross it.
-    let (b, mut m) = annulus(6, 1, 0.24, 0.1);
-    let optimiser = Optimiser::new(&b, 8, None);
+    let (b, mut m) = annulus(5, 2, 0.24, 0.1);
+    let optimiser = Optimiser::new(&b, 6, None);
     assert!(!optimiser.quality(&m).valid(), "the start must be tangled");
     let outcome = optimiser.optimise(&mut m, None, Effort::Full);
     assert!(outcome.valid && outcome.min_scaled_jacobian > 0.3, "{outcome:?}");
@@ -144,4 +144,39 @@ fn same_input_same_bits() {
         m
     };
     assert_eq!(run(), run());
+}
+
+#[test]
+fn a_graded_strip_becomes_equally_spaced() {
+    let xs: Vec<f64> = (0..=8).map(|i| (i as f64 / 8.0).powi(3)).collect();
+    let (b, mut m) = rectangle(1.0, 0.4, &xs, &[0.0, 0.1, 0.3, 0.8, 1.0]);
+    let optimiser = Optimiser::new(&b, 3, None);
+    let moves = equal_spacing(&optimiser, &mut m, 200);
+    assert!(moves > 0);
+    let quality = optimiser.quality(&m);
+    assert!(quality.valid() && quality.min_scaled_jacobian > 0.95);
+    for edge in &m.edges {
+        let [a, b] = edge.vertices.map(|v| m.vertices[v as usize].point);
+        let d = b - a;
+        let wanted = if d.x.abs() > d.y.abs() { 1.0 / 8.0 } else { 0.4 / 4.0 };
+        assert!((d.norm() - wanted).abs() < 0.02 * wanted, "{} instead of {wanted}", d.norm());
+    }
+}
+
+#[test]
+fn smoothing_never_makes_the_worst_element_worse() {
+    let (b, mut m) = annulus(14, 4, 0.15, 0.1);
+    let mut random = Sequence(3);
+    for v in m.vertices.iter_mut().filter(|v| v.place == Place::Interior) {
+        v.point += Vector::new(random.next() - 0.5, random.next() - 0.5) * 0.02;
+    }
+    let optimiser = Optimiser::new(&b, 4, None);
+    let mut worst = optimiser.quality(&m).min_scaled_jacobian;
+    assert!(worst > 0.0);
+    for _ in 0..10 {
+        equal_spacing(&optimiser, &mut m, 1);
+        let now = optimiser.quality(&m).min_scaled_jacobian;
+        assert!(now >= worst.min(0.7), "{worst} -> {now}");
+        worst = now;
+    }
 }

@@ -3,7 +3,7 @@
 //! *In:* a [`QuadMesh`](crate::mesh::QuadMesh), possibly with inverted elements. *Out:* the same mesh
 //! with its vertices, boundary positions and edge shapes moved.
 //!
-//! [`equal_spacing`](laplacian) is the paper's Laplacian. The work is done by one [`Optimiser`] of
+//! [`equal_spacing`] is the paper's Laplacian. The work is done by one [`Optimiser`] of
 //! the curved elements themselves. Its unknowns are the interior vertices, the arc lengths of boundary
 //! vertices (boundary edges follow the curve and slide with them) and the bubbles of interior
 //! edges; the insides are Coons maps. Its energy Σ f^p, f = (|a|²/ℓ₁² + |b|²/ℓ₂²) / (2 det/(ℓ₁ℓ₂)) ≥
@@ -17,6 +17,7 @@
 
 mod edge_error;
 mod kernel;
+mod laplacian;
 mod minimiser;
 mod optimiser;
 mod problem;
@@ -26,5 +27,6 @@ mod untangle;
 mod walk;
 
 pub use edge_error::BoundaryTolerance;
+pub use laplacian::equal_spacing;
 pub use optimiser::{Effort, Optimiser, Outcome};
 pub use quality::{ElementQuality, Quality};

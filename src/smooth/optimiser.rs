@@ -35,6 +35,9 @@ pub struct Outcome {
 /// Step bound of the minimiser, in natural lengths.
 const REACH: f64 = 0.5;
 
+/// Sweeps of the relaxation that restarts a hopeless mesh.
+const FLATTEN_SWEEPS: usize = 200;
+
 struct Schedule {
     powers: &'static [u32],
     steps: usize,
@@ -114,9 +117,16 @@ impl<'a> Optimiser<'a> {
         let mut problem = new(mesh, true);
         let mut valid = problem.least_jacobian() > 0.0;
         if !valid {
-            // First with the boundary fixed: sliding vertices would rather pile up than let go.
-            for slide in [false, true] {
+            // First with the boundary fixed: sliding vertices would rather pile up than let go. If
+            // both fail, the start was worthless: the same from straight edges and mean positions.
+            for (slide, flatten) in [(false, false), (true, false), (false, true), (true, false)] {
                 problem = new(mesh, slide);
+                if flatten {
+                    if effort == Effort::Quick {
+                        break;
+                    }
+                    problem.flatten(FLATTEN_SWEEPS);
+                }
                 let (rounds, steps) = (schedule.untangle_rounds, schedule.untangle_steps);
                 valid = untangle(&mut problem, &mut lbfgs, rounds, steps, &mut evaluations);
                 problem.store(mesh);

@@ -325,6 +325,45 @@ impl<'a> Problem<'a> {
         true
     }
 
+    /// Forgets the shape: free edges straight, free vertices at the means of their neighbours
+    /// (Gauss-Seidel with over-relaxation, at most `sweeps` sweeps).
+    pub fn flatten(&mut self, sweeps: usize) {
+        const OVER: f64 = 1.6;
+        const STILL: f64 = 1e-3;
+        let mut neighbours = vec![Vec::new(); self.vertices.len()];
+        let mut x = std::mem::take(&mut self.unknowns);
+        for edge in &self.edges {
+            let [a, b] = edge.vertices;
+            neighbours[a as usize].push(b);
+            neighbours[b as usize].push(a);
+            if let Shape::Interior { unknown } = edge.shape {
+                if unknown != NONE {
+                    x[unknown as usize..unknown as usize + 2 * self.reference.bubbles].fill(0.0);
+                }
+            }
+        }
+        for _ in 0..sweeps {
+            let (mut moved, mut size) = (0.0f64, 0.0f64);
+            for v in 0..self.vertices.len() {
+                let Freedom::Free(u) = self.vertices[v].freedom else { continue };
+                let point = |v: &u32| self.vertices[*v as usize].point;
+                let near = &neighbours[v];
+                let mean = near.iter().map(point).sum::<Vector>() / near.len() as f64;
+                let step = (mean - self.vertices[v].point) * OVER;
+                moved = moved.max(step.norm());
+                size = size.max((point(&near[0]) - mean).norm());
+                self.vertices[v].point += step;
+                let p = self.vertices[v].point;
+                (x[u as usize], x[u as usize + 1]) = (p.x, p.y);
+            }
+            if moved <= STILL * size {
+                break;
+            }
+        }
+        self.unknowns = x;
+        self.refresh();
+    }
+
     /// Length of each local edge as sampled last.
     fn lengths(&self) -> Vec<f64> {
         let k = self.reference.samples.len();
