@@ -2,8 +2,8 @@
 
 mod drawing;
 
-use drawing::{circle, draw, least_corner, picture, polygons, quad, valences};
-use quadrel::domain::{Boundary, Frame, Place};
+use drawing::{add_loop, circle, draw, least_corner, nowhere, picture, polygons, quad, valences};
+use quadrel::domain::{Boundary, Place};
 use quadrel::layout::{conform, BlockLayout, Conforming, NodeKind, PentagonRule, Targets};
 use quadrel::numerics::Point;
 use std::collections::BTreeMap;
@@ -256,51 +256,23 @@ fn spiral() -> (Boundary, BlockLayout) {
         let a = std::f64::consts::TAU * turn;
         Point::new(0.5 + r * a.cos(), 0.5 + r * a.sin())
     };
-    let inner = |x: f64| 0.15 + 0.1 * x;
-    let trace = |x: f64| 0.25 + 0.1 * x;
-    let mut boundary = Boundary {
-        frame: Frame::identity(),
-        names: vec!["wall".into()],
-        chains: Vec::new(),
-        junctions: Vec::new(),
-        loops: Vec::new(),
-        area: 0.0,
-    };
-    circle(&mut boundary, Point::new(0.5, 0.5), 0.5, 1.0);
+    let share = |i: usize| i as f64 / n as f64;
     // Clockwise: from the top of the step down the spiral to its foot, then up the step.
-    let spiral: Vec<Point> =
-        (0..=n).map(|i| at(1.0 - i as f64 / n as f64, inner(1.0 - i as f64 / n as f64))).collect();
-    let hole = polygons(&[spiral]);
-    let (chains, junctions) = (boundary.chains.len() as u32, boundary.junctions.len() as u32);
-    boundary.loops.push(hole.loops[0].iter().map(|c| c + chains).collect());
-    boundary.area += hole.area;
-    boundary.chains.extend(hole.chains.into_iter().map(|mut c| {
-        c.loop_index = 1;
-        c.ends = c.ends.map(|e| e.map(|j| j + junctions));
-        c
-    }));
-    boundary.junctions.extend(hole.junctions.into_iter().map(|mut j| {
-        j.chain_in += chains;
-        j.chain_out += chains;
-        j
-    }));
-    // Points: the spiral's corners 0..=n from the step's top (0) to its foot (n); w on the radial line; o outside.
-    let mut p: Vec<(f64, f64)> = (0..=n)
-        .map(|i| at(1.0 - i as f64 / n as f64, inner(1.0 - i as f64 / n as f64)))
-        .map(|q| (q.x, q.y))
-        .collect();
-    let (w, o) = (n + 1, n + 2);
-    p.extend([at(0.0, trace(1.0)), at(0.0, 0.5)].map(|q| (q.x, q.y)));
-    let path: Vec<usize> = (n + 3..n + 3 + n - 1).collect();
-    p.extend((1..n).map(|i| at(i as f64 / n as f64, trace(i as f64 / n as f64))).map(|q| (q.x, q.y)));
-    // Between the hole and the trace, and between the trace and the circle.
-    let mut trace_out = vec![0];
-    trace_out.extend(&path);
-    let mut trace_back = vec![w];
-    trace_back.extend(path.iter().rev());
-    let below = vec![(0..n).collect(), vec![n], trace_out, vec![w]];
-    let above = vec![trace_back, vec![0, w], vec![o], vec![o]];
-    (boundary.clone(), draw(&boundary, &p, &[below, above], &[]))
+    let hole: Vec<Point> = (0..=n).rev().map(|i| at(share(i), 0.15 + 0.1 * share(i))).collect();
+    let trace: Vec<Point> = (0..=n).map(|i| at(share(i), 0.25 + 0.1 * share(i))).collect();
+    let mut boundary = nowhere();
+    circle(&mut boundary, Point::new(0.5, 0.5), 0.5, 1.0);
+    add_loop(&mut boundary, &[hole.clone(), vec![hole[n], hole[0]]]);
+    // Nodes half-way round keep two arcs between the same nodes apart.
+    let (top, foot, w, o, half, round) = (0, 1, 2, 3, 4, 5);
+    let nodes = [hole[0], hole[n], trace[n], at(0.0, 0.5), hole[n / 2], trace[n / 2]].map(|p| (p.x, p.y));
+    let below = vec![vec![top, half], vec![foot], vec![top, round], vec![w]];
+    let above = vec![vec![w, round], vec![top, w], vec![o], vec![o]];
+    let mut layout = draw(&boundary, &nodes, &[below, above], &[]);
+    let arcs = [0, 1].map(|i| layout.regions[0].sides[2][i].arc as usize);
+    layout.arcs[arcs[0]].points = trace[..=n / 2].to_vec();
+    layout.arcs[arcs[1]].points = trace[n / 2..].to_vec();
+    (boundary, layout)
 }
 
 #[test]
@@ -316,14 +288,7 @@ fn a_limit_cycle_gets_a_pair_of_singularities() {
 
 #[test]
 fn an_annulus_cut_once_keeps_its_loops() {
-    let mut boundary = Boundary {
-        frame: Frame::identity(),
-        names: vec!["wall".into()],
-        chains: Vec::new(),
-        junctions: Vec::new(),
-        loops: Vec::new(),
-        area: 0.0,
-    };
+    let mut boundary = nowhere();
     circle(&mut boundary, Point::new(0.5, 0.5), 0.5, 1.0);
     circle(&mut boundary, Point::new(0.5, 0.5), 0.2, -1.0);
     let layout = draw(&boundary, &[(1.0, 0.5), (0.7, 0.5)], &[quad([0, 0, 1, 1])], &[]);

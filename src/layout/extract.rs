@@ -258,16 +258,7 @@ impl Work<'_> {
         for (i, &c) in self.class.iter().enumerate() {
             position[i] = placed[c as usize].point;
         }
-        for star in &self.grids.stars {
-            let feet: Vec<Point> = star.spokes.iter().map(|s| position[s[0] as usize]).collect();
-            let centre = polyline::mean(&feet);
-            for spoke in &star.spokes {
-                let (foot, n) = (position[spoke[0] as usize], spoke.len() - 1);
-                for (k, &id) in spoke.iter().enumerate().skip(1) {
-                    position[id as usize] = foot + (centre - foot) * (k as f64 / n as f64);
-                }
-            }
-        }
+        self.grids.stars.iter().for_each(|star| star.lay_out(&mut position));
         for grid in &self.grids.grids {
             coons(grid, &mut position);
         }

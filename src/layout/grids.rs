@@ -5,7 +5,7 @@
 
 use super::identify::Identification;
 use super::lengths::Lengths;
-use super::polyline::Measured;
+use super::polyline::{self, Measured};
 use super::{BlockLayout, SideArc};
 use crate::domain::{Boundary, BoundaryPoint, Place};
 use crate::numerics::{Point, NONE};
@@ -43,10 +43,37 @@ pub(super) struct UnitPoint {
     pub place: Place,
 }
 
-/// A star's points: its centre and its spokes, from the side to the centre.
+/// A star's points: its sides from corner to corner and its spokes from side to centre.
 #[derive(Debug, Clone)]
 pub(super) struct Star {
-    pub spokes: Vec<Vec<u32>>,
+    sides: Vec<Vec<u32>>,
+    spokes: Vec<Vec<u32>>,
+}
+
+impl Star {
+    /// Positions of centre and spokes from those of the sides: the centre is the centroid of the
+    /// spokes' feet, a spoke the mean of the two pieces of border opposite to it in the grids beside it,
+    /// moved so that its ends fit.
+    pub fn lay_out(&self, position: &mut [Point]) {
+        let k = self.sides.len();
+        let feet: Vec<Point> = self.spokes.iter().map(|s| position[s[0] as usize]).collect();
+        let centre = polyline::mean(&feet);
+        for (i, spoke) in self.spokes.iter().enumerate() {
+            let n = spoke.len() - 1;
+            let (before, after) = (&self.sides[(i + k - 1) % k], &self.sides[(i + 1) % k]);
+            let beside: Vec<Point> = (0..=n)
+                .map(|j| {
+                    let [a, b] = [before[before.len() - 1 - j], after[j]].map(|id| position[id as usize]);
+                    a + (b - a) * 0.5
+                })
+                .collect();
+            let (first, last) = (feet[i] - beside[0], centre - beside[n]);
+            for j in 1..=n {
+                let x = j as f64 / n as f64;
+                position[spoke[j] as usize] = beside[j] + first * (1.0 - x) + last * x;
+            }
+        }
+    }
 }
 
 /// All unit points, grids and identifications.
@@ -221,7 +248,7 @@ impl Grids {
             number_inside(&mut grid, next);
             self.grids.push(grid);
         }
-        self.stars.push(Star { spokes: lines });
+        self.stars.push(Star { sides: sides.iter().map(|s| s.ids.clone()).collect(), spokes: lines });
         true
     }
 }

@@ -161,7 +161,14 @@ impl BlockLayout {
             }
         }
         let Some((_, r, c)) = best else { return false };
-        self.cut_between(r, [(c + 3) % 4, c], [0.5, 0.5], boundary, targets);
+        // Equally far from the corner on both sides, so that a long region is cut near its end.
+        let sides = [(c + 3) % 4, c];
+        let [one, two] = sides.map(|s| {
+            let side = &self.regions[r as usize].sides[s];
+            side.iter().map(|a| wanted[a.arc as usize]).sum::<f64>().max(f64::MIN_POSITIVE)
+        });
+        let reach = f64::min(one, two) / 2.0;
+        self.cut_between(r, sides, [1.0 - reach / one, reach / two], boundary, targets);
         true
     }
 

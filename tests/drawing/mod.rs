@@ -5,44 +5,53 @@ use quadrel::layout::{Arc, BlockLayout, Node, NodeKind, QuadLayout, Region, Side
 use quadrel::numerics::{cross, Point, Vector};
 use std::collections::BTreeMap;
 
-/// Polygonal loops (outer counter-clockwise, holes clockwise) as a boundary; every point is a junction.
-pub fn polygons(loops: &[Vec<Point>]) -> Boundary {
-    let (mut chains, mut junctions, mut of_loops) = (Vec::new(), Vec::new(), Vec::new());
-    let mut area = 0.0;
-    for (l, points) in loops.iter().enumerate() {
-        let (n, first) = (points.len(), junctions.len() as u32);
-        let mut own = Vec::new();
-        for i in 0..n {
-            let [before, at, after] = [points[(i + n - 1) % n], points[i], points[(i + 1) % n]];
-            let (u, v) = (at - before, after - at);
-            let angle = std::f64::consts::PI - cross(u, v).atan2(u.dot(&v));
-            let here = first + i as u32;
-            let chain_in = first + ((i + n - 1) % n) as u32;
-            junctions.push(Junction { point: at, angle, chain_in, chain_out: here });
-            let length = v.norm();
-            let sample = |s: f64, point: Point, t: f64| Sample {
-                s,
-                point,
-                tangent: v / length,
-                curvature: 0.0,
-                segment: i as u32,
-                t,
-            };
-            let samples = vec![sample(0.0, at, 0.0), sample(length, after, 1.0)];
-            let ends = Some([here, first + ((i + 1) % n) as u32]);
-            chains.push(Chain { loop_index: l as u32, name: 0, ends, length, samples, breaks: Vec::new() });
-            own.push(here);
-            area += cross(at.coords, after.coords) / 2.0;
-        }
-        of_loops.push(own);
-    }
+/// A boundary without any loop yet.
+pub fn nowhere() -> Boundary {
     Boundary {
         frame: Frame::identity(),
         names: vec!["wall".into()],
-        chains,
-        junctions,
-        loops: of_loops,
-        area,
+        chains: Vec::new(),
+        junctions: Vec::new(),
+        loops: Vec::new(),
+        area: 0.0,
+    }
+}
+
+/// Polygonal loops (outer counter-clockwise, holes clockwise) as a boundary; every point is a junction.
+pub fn polygons(loops: &[Vec<Point>]) -> Boundary {
+    let mut boundary = nowhere();
+    for points in loops {
+        let n = points.len();
+        let chains: Vec<Vec<Point>> = (0..n).map(|i| vec![points[i], points[(i + 1) % n]]).collect();
+        add_loop(&mut boundary, &chains);
+    }
+    boundary
+}
+
+/// Adds a loop of chains, each through the points of a polyline; junctions where they meet.
+pub fn add_loop(boundary: &mut Boundary, chains: &[Vec<Point>]) {
+    let (n, first) = (chains.len() as u32, boundary.junctions.len() as u32);
+    let first_chain = boundary.chains.len() as u32;
+    let loop_index = boundary.loops.len() as u32;
+    boundary.loops.push((first_chain..first_chain + n).collect());
+    for (i, points) in chains.iter().enumerate() {
+        let i = i as u32;
+        let before = &chains[((i + n - 1) % n) as usize];
+        let (u, v) = (before[before.len() - 1] - before[before.len() - 2], points[1] - points[0]);
+        let angle = std::f64::consts::PI - cross(u, v).atan2(u.dot(&v));
+        let [chain_in, chain_out] = [first_chain + (i + n - 1) % n, first_chain + i];
+        boundary.junctions.push(Junction { point: points[0], angle, chain_in, chain_out });
+        let mut s = 0.0;
+        let mut samples = Vec::new();
+        for (k, &point) in points.iter().enumerate() {
+            let (a, b) = (points[k.max(1) - 1], points[(k + 1).min(points.len() - 1)]);
+            s += if k > 0 { (point - a).norm() } else { 0.0 };
+            let t = k as f64 / (points.len() - 1) as f64;
+            samples.push(Sample { s, point, tangent: (b - a).normalize(), curvature: 0.0, segment: i, t });
+            boundary.area += if k > 0 { cross(a.coords, point.coords) / 2.0 } else { 0.0 };
+        }
+        let ends = Some([first + i, first + (i + 1) % n]);
+        boundary.chains.push(Chain { loop_index, name: 0, ends, length: s, samples, breaks: Vec::new() });
     }
 }
 
