@@ -9,6 +9,7 @@ pub mod layout;
 pub mod mesh;
 pub mod numerics;
 pub mod options;
+pub mod output;
 pub mod progress;
 pub mod refine;
 pub mod separatrices;
