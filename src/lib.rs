@@ -10,6 +10,7 @@ pub mod layout;
 pub mod mesh;
 pub mod numerics;
 pub mod options;
+pub mod output;
 pub mod progress;
 pub mod refine;
 pub mod separatrices;
