@@ -24,3 +24,10 @@ pub const LONGEST_LOOP_SHARE: f64 = 1.0 / 3.0;
 
 /// Share of the boundary tolerance that placement aims at, so that vertices may still slide.
 pub const PLACEMENT_MARGIN: f64 = 0.9;
+
+/// Largest distance of a boundary vertex from the point of its place, relative to the domain's
+/// diagonal: both are evaluations of the same table, or of the exact curve beside it.
+pub const PLACE_DISTANCE: f64 = 1e-9;
+
+/// Largest difference of arc lengths that are the same place, relative to the domain's diagonal.
+pub const SPAN_GAP: f64 = 1e-12;
