@@ -7,6 +7,7 @@ use crate::domain::Boundary;
 use crate::error::{Error, Result};
 use crate::layout::{self, t_mesh, QuadLayout, Targets};
 use crate::mesh::{BoundaryError, BoundaryTolerance};
+use crate::numerics::tolerances::LEAST_REFINEMENT;
 use crate::options::Options;
 use crate::progress::Stage;
 use crate::refine::least_pieces;
@@ -40,7 +41,7 @@ pub(super) fn first_request(options: &Options, boundary: &Boundary) -> Request {
 
 /// Asks for a finer base mesh everywhere.
 pub(super) fn refine(request: &mut Request, boundary: &Boundary) {
-    let size = request.size.unwrap_or_else(|| base_mesh::automatic_size(boundary));
+    let size = request.size.unwrap_or_else(|| base_mesh::usual_size(boundary));
     request.size = Some(size * FINER);
 }
 
@@ -52,24 +53,27 @@ pub(super) fn field(
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<Field> {
-    for round in 0.. {
+    let usual = base_mesh::usual_size(boundary);
+    let least = LEAST_REFINEMENT * request.size.map_or(usual, |h| h.min(usual));
+    let mut round = 0;
+    loop {
         let mesh = watch.run(stages, Stage::BaseMesh, |_| base_mesh::triangulate(boundary, request))?;
         stages.triangulation = Some(mesh.clone());
         let cross =
             watch.run(stages, Stage::CrossField, |_| cross_field::solve(&mesh, boundary, options.field))?;
         stages.cross_field = Some(cross.clone());
-        let gate = singularities::gate(&mesh, &cross, boundary);
-        if let (Err(places), true) = (&gate, round < GATE_ROUNDS) {
-            request.refine.extend(places.iter().copied());
+        let found = singularities::find(&mesh, boundary, &cross);
+        let known = found.as_ref().map_or(&[][..], |(singularities, _)| singularities);
+        if let (Err(places), true) = (singularities::gate(&mesh, &cross, known, least), round < GATE_ROUNDS) {
+            request.refine.extend(places);
+            round += 1;
             continue;
         }
-        let (singularities, corners) =
-            watch.run(stages, Stage::Singularities, |_| singularities::find(&mesh, &cross, boundary))?;
+        let (singularities, corners) = watch.run(stages, Stage::Singularities, |_| found)?;
         stages.singularities = singularities.clone();
         stages.corners = corners.clone();
         return Ok(Field { mesh, cross, singularities, corners });
     }
-    unreachable!("the loop above returns")
 }
 
 /// Separatrices, the T-mesh of regions, and its repair to conforming blocks.
