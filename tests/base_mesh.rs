@@ -31,10 +31,8 @@ fn every_shape_is_triangulated() {
         let m = mesh(&b);
         m.check().unwrap_or_else(|e| panic!("{name}: {e:?}"));
         assert_eq!(m.loops.len(), b.loops.len(), "{name}");
-        let area: f64 = (0..m.triangles.len())
-            .map(|t| corners(&m, t))
-            .map(|[a, b, c]| 0.5 * cross(b - a, c - a))
-            .sum();
+        let area: f64 =
+            (0..m.triangles.len()).map(|t| corners(&m, t)).map(|[a, b, c]| 0.5 * cross(b - a, c - a)).sum();
         assert!((area - b.area).abs() < 0.01 * b.area, "{name}: area {area}, {} expected", b.area);
         assert!((300..8000).contains(&m.triangles.len()), "{name}: {} triangles", m.triangles.len());
     }

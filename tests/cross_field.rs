@@ -45,7 +45,10 @@ fn the_square_s_field_is_constant() {
     let mesh = triangulate(&b, &Request::default()).unwrap();
     let field = solve(&mesh, &b, FieldMethod::Diffused).unwrap();
     for (t, own) in field.triangles.iter().enumerate() {
-        assert!(own.edge_turn.iter().chain(&own.corner_turn).all(|x| x.abs() < 1e-6), "triangle {t}: {own:?}");
+        assert!(
+            own.edge_turn.iter().chain(&own.corner_turn).all(|x| x.abs() < 1e-6),
+            "triangle {t}: {own:?}"
+        );
     }
 }
 

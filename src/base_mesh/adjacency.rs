@@ -59,7 +59,10 @@ pub(super) fn assemble(
                     place
                 } else {
                     let share = ((point - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
-                    Place::Boundary(BoundaryPoint { chain: chord.chain, s: chord.start + share * chord.length() })
+                    Place::Boundary(BoundaryPoint {
+                        chain: chord.chain,
+                        s: chord.start + share * chord.length(),
+                    })
                 };
                 vertices.push(BaseVertex { point, place });
                 v = next[v as usize];
@@ -68,7 +71,10 @@ pub(super) fn assemble(
         loops.push(own);
     }
     if vertices.len() != border_edges {
-        return Err(Error::BaseMesh { reason: "the border has a part that is not of the boundary".into(), at: None });
+        return Err(Error::BaseMesh {
+            reason: "the border has a part that is not of the boundary".into(),
+            at: None,
+        });
     }
 
     let mut triangles = raw.triangles.clone();

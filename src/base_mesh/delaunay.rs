@@ -204,7 +204,8 @@ fn inverted(
     let wrong = (0..polygon.len()).any(|i| {
         let edge = cdt.get_edge_from_neighbors(handles[i], handles[polygon.next[i] as usize]);
         edge.is_none_or(|e| {
-            !inside(e.face().as_inner().map(|f| f.fix())) || inside(e.rev().face().as_inner().map(|f| f.fix()))
+            !inside(e.face().as_inner().map(|f| f.fix()))
+                || inside(e.rev().face().as_inner().map(|f| f.fix()))
         })
     });
     wrong.then(|| sampling.loops.iter().flatten().map(|c| c.turn > 1e-6).collect())

@@ -89,7 +89,8 @@ impl<'a> Sampling<'a> {
             Some(_) => 2,
         };
         let pieces = ((chain.length / size).ceil() as usize).clamp(least, 1 << 22);
-        let at = |i: usize| if i == pieces { chain.length } else { chain.length * (i as f64 / pieces as f64) };
+        let at =
+            |i: usize| if i == pieces { chain.length } else { chain.length * (i as f64 / pieces as f64) };
         chords.extend((0..pieces).map(|i| self.chord(c, at(i), at(i + 1))));
     }
 
@@ -156,13 +157,10 @@ impl<'a> Sampling<'a> {
     /// Halves the marked chords; whether there was any.
     pub fn halve(&mut self, marks: &[Vec<bool>]) -> bool {
         let mut any = false;
-        for l in 0..self.loops.len() {
-            if !marks[l].contains(&true) {
-                continue;
-            }
+        for (l, marks) in marks.iter().enumerate().filter(|(_, marks)| marks.contains(&true)) {
             let old = std::mem::take(&mut self.loops[l]);
             let mut new = Vec::with_capacity(old.len() + old.len() / 2);
-            for (chord, &marked) in old.iter().zip(&marks[l]) {
+            for (chord, &marked) in old.iter().zip(marks) {
                 let middle = 0.5 * (chord.start + chord.end);
                 // A chord without a number between its ends cannot be halved.
                 if marked && middle > chord.start && middle < chord.end {

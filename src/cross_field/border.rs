@@ -60,7 +60,8 @@ impl Border {
         let (mut t, mut i) = (t, i);
         let mut phi = 0.0;
         for _ in 0..mesh.triangles.len() {
-            let [a, b] = [(i + 1) % 3, (i + 2) % 3].map(|k| mesh.vertices[mesh.triangles[t][k] as usize].point - at);
+            let [a, b] =
+                [(i + 1) % 3, (i + 2) % 3].map(|k| mesh.vertices[mesh.triangles[t][k] as usize].point - at);
             if phi == 0.0 {
                 self.direction[v] = a.y.atan2(a.x);
             }
@@ -78,7 +79,10 @@ impl Border {
                 }
             }
         }
-        Err(Error::CrossField { reason: "the triangles about a border vertex do not end".into(), at: Some(at) })
+        Err(Error::CrossField {
+            reason: "the triangles about a border vertex do not end".into(),
+            at: Some(at),
+        })
     }
 
     /// Whether `v` is a border vertex.
@@ -121,8 +125,19 @@ mod tests {
     #[test]
     fn table_1_with_ties_downwards() {
         let degrees = [
-            (1.0, 0), (44.9, 0), (45.0, 1), (90.0, 1), (135.0, 1), (135.1, 2), (180.0, 2), (225.0, 2),
-            (226.0, 3), (270.0, 3), (315.0, 3), (316.0, 4), (360.0, 4),
+            (1.0, 0),
+            (44.9, 0),
+            (45.0, 1),
+            (90.0, 1),
+            (135.0, 1),
+            (135.1, 2),
+            (180.0, 2),
+            (225.0, 2),
+            (226.0, 3),
+            (270.0, 3),
+            (315.0, 3),
+            (316.0, 4),
+            (360.0, 4),
         ];
         for (angle, quads) in degrees {
             for noise in [-1e-9, 1e-9] {

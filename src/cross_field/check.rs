@@ -26,7 +26,10 @@ impl CrossField {
                 if other == NONE {
                     let direction = (b - a).y.atan2((b - a).x);
                     if own.edge_turn[i] != 0.0 || off_quarter(own.start_of_edge(i) - direction) {
-                        return Err((format!("the cross is not tangent to border edge {i} of triangle {t}"), a));
+                        return Err((
+                            format!("the cross is not tangent to border edge {i} of triangle {t}"),
+                            a,
+                        ));
                     }
                     continue;
                 }
@@ -43,10 +46,14 @@ impl CrossField {
             }
         }
         let euler = 2 - mesh.loops.len() as i64;
-        let missing: i64 = mesh.loops.iter().flatten().map(|&v| 2 - i64::from(self.quads_at[v as usize])).sum();
+        let missing: i64 =
+            mesh.loops.iter().flatten().map(|&v| 2 - i64::from(self.quads_at[v as usize])).sum();
         if total != 4 * euler - missing {
             let start = mesh.vertices[0].point;
-            return Err((format!("index theorem: windings {total}, expected {}", 4 * euler - missing), start));
+            return Err((
+                format!("index theorem: windings {total}, expected {}", 4 * euler - missing),
+                start,
+            ));
         }
         Ok(())
     }

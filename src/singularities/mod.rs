@@ -66,8 +66,8 @@ pub fn find(
             return Err(Error::CrossField { reason, at: Some(corners[0]) });
         }
         let valence = (4 - own.winding) as u8;
-        let point = zero(corners, mesh.triangles[t].map(|v| field.u[v as usize]));
-        let ports = ports::ports(corners, own, point, valence);
+        let zero = zero(corners, mesh.triangles[t].map(|v| field.u[v as usize]));
+        let (point, ports) = ports::ports(corners, own, zero, valence);
         singularities.push(Singularity { triangle: t as u32, point, valence, ports });
     }
 
@@ -93,7 +93,10 @@ pub fn check(
 ) -> std::result::Result<(), (String, Point)> {
     for s in singularities {
         if s.ports.len() != s.valence as usize {
-            return Err((format!("{} ports at a singularity of valence {}", s.ports.len(), s.valence), s.point));
+            return Err((
+                format!("{} ports at a singularity of valence {}", s.ports.len(), s.valence),
+                s.point,
+            ));
         }
     }
     let inside: i64 = singularities.iter().map(|s| 4 - i64::from(s.valence)).sum();
@@ -101,7 +104,10 @@ pub fn check(
     let euler = 2 - mesh.loops.len() as i64;
     if inside + border != 4 * euler {
         let at = singularities.first().map_or(mesh.vertices[0].point, |s| s.point);
-        return Err((format!("index theorem: {inside} inside and {border} at corners for 4χ = {}", 4 * euler), at));
+        return Err((
+            format!("index theorem: {inside} inside and {border} at corners for 4χ = {}", 4 * euler),
+            at,
+        ));
     }
     Ok(())
 }
@@ -115,5 +121,7 @@ fn zero(corners: [Point; 3], u: [[f64; 2]; 3]) -> Point {
     let share = |x: f64| if total != 0.0 { (x / total).clamp(SINGULAR_BARYCENTRIC, 1.0) } else { 1.0 };
     let shares = areas.map(share);
     let sum: f64 = shares.iter().sum();
-    Point::from((corners[0].coords * shares[0] + corners[1].coords * shares[1] + corners[2].coords * shares[2]) / sum)
+    Point::from(
+        (corners[0].coords * shares[0] + corners[1].coords * shares[1] + corners[2].coords * shares[2]) / sum,
+    )
 }

@@ -25,14 +25,15 @@ pub struct Resolved {
 /// Triangulates, solves and finds singularities, and refines the base mesh where [`gate`] asks for it,
 /// a bounded number of times; what [`find`] accepts after that is taken.
 pub fn resolve(boundary: &Boundary, mut request: Request, method: FieldMethod) -> Result<Resolved> {
-    let least = LEAST_REFINEMENT * request.size.unwrap_or_else(|| usual_size(boundary)).min(usual_size(boundary));
+    let least =
+        LEAST_REFINEMENT * request.size.unwrap_or_else(|| usual_size(boundary)).min(usual_size(boundary));
     let mut round = 0;
     loop {
         let mesh = triangulate(boundary, &request)?;
         let field = solve(&mesh, boundary, method)?;
         let found = find(&mesh, boundary, &field);
         let known = found.as_ref().map_or(&[][..], |(singularities, _)| singularities);
-        match gate(&mesh, &field, known, least) {
+        match gate(&mesh, boundary, &field, known, least) {
             Err(places) if round < ROUNDS => request.refine.extend(places),
             _ => {
                 let (singularities, corners) = found?;

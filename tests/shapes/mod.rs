@@ -72,7 +72,11 @@ pub fn boundary(loops: &[Vec<Piece>]) -> Boundary {
             let (a, b) = (pieces[(i + n - 1) % n].at(1.0).1, pieces[i].at(0.0).1);
             let turn = cross(a, b).atan2(a.dot(&b));
             // A reversal is a slit's end or a spike of the domain; only the former is used here.
-            if turn > PI - 1e-9 { -turn } else { turn }
+            if turn > PI - 1e-9 {
+                -turn
+            } else {
+                turn
+            }
         };
         let corners: Vec<usize> = (0..n).filter(|&i| turn(i).abs() > CORNER_TURN).collect();
         let first = corners.first().copied().unwrap_or(0);
