@@ -1,6 +1,6 @@
 //! Chords of the boundary: how finely each chain is cut.
 
-use super::Request;
+use super::size_field::SizeField;
 use crate::domain::{Boundary, BoundaryPoint, Chain, Place};
 use crate::numerics::tolerances::{
     CHORD_RATIO, CHORD_TURN, CORNER_CHORD_TURN, SHARP_TIP, SNAP_GRID, SNAP_LEAST_CHORD,
@@ -55,19 +55,19 @@ fn accumulate_turning(chain: &Chain) -> Vec<f64> {
 
 impl<'a> Sampling<'a> {
     /// Cuts the boundary: chords no longer than wanted, turning little, graded.
-    pub fn new(boundary: &'a Boundary, request: &Request, size: f64) -> Self {
+    pub fn new(boundary: &'a Boundary, sizes: &SizeField) -> Self {
         let turning: Vec<_> = boundary.chains.iter().map(accumulate_turning).collect();
         let mut sampling = Sampling { boundary, turning, loops: Vec::with_capacity(boundary.loops.len()) };
         for chains in &boundary.loops {
             let mut chords = Vec::new();
             for &c in chains {
-                sampling.partition(c, size, chains.len(), &mut chords);
+                sampling.partition(c, sizes.usual(), chains.len(), &mut chords);
             }
             sampling.loops.push(chords);
         }
         sampling.halve_while(|s, chord| {
             let middle = s.chain(chord).point(0.5 * (chord.start + chord.end));
-            chord.turn > s.most_turn(chord) || chord.length() > request.size_at(middle, size)
+            chord.turn > s.most_turn(chord) || chord.length() > sizes.at(middle)
         });
         sampling.balance();
         sampling
