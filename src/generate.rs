@@ -78,7 +78,7 @@ fn steps_1_to_9(
     let field = blocks::field(boundary, options, request, watch, stages)?;
 
     // Steps 4 to 6: separatrices, quad-dominant regions, repair.
-    let layout = blocks::layout(boundary, tolerance, &field, watch, stages)?;
+    let layout = blocks::layout(boundary, options, tolerance, &field, watch, stages)?;
 
     // Steps 7 to 9: subdivide and smooth until every boundary edge meets the tolerance.
     let mesh = rounds::refine_and_smooth(boundary, options, tolerance, &layout, watch, stages)?;

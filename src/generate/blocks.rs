@@ -1,7 +1,7 @@
 //! Steps 1 to 6: from the boundary to conforming blocks.
 
 use super::watch::Watch;
-use crate::base_mesh::{self, Request, SizeField, Triangulation};
+use crate::base_mesh::{self, Request, ElementSize, Triangulation};
 use crate::cross_field::{self, CrossField};
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
@@ -19,9 +19,6 @@ use crate::stages::Stages;
 const GATE_ROUNDS: usize = 6;
 /// Rounds of seed rays for regions with two tips.
 const SEED_ROUNDS: usize = 6;
-/// Size of an element in base edges, before coarsening: base edges turn about 0.2 rad, elements may turn
-/// four or five times that.
-const ELEMENT_SIZE: f64 = 4.0;
 /// Edges a chain gets for each one that the tolerance needs: room for vertices that slide.
 const CHAIN_MARGIN: f64 = 1.2;
 /// Base size of the next attempt relative to the last.
@@ -79,6 +76,7 @@ pub(super) fn field(
 /// Separatrices, the T-mesh of regions, and its repair to conforming blocks.
 pub(super) fn layout(
     boundary: &Boundary,
+    options: &Options,
     tolerance: &BoundaryTolerance,
     field: &Field,
     watch: &mut Watch,
@@ -110,8 +108,9 @@ pub(super) fn layout(
             let least = least_pieces(chain, &error)?;
             minimum.push(if least > 1 { (least as f64 * CHAIN_MARGIN).ceil() as u32 } else { 1 });
         }
-        let sizes = SizeField::new(mesh);
-        let size = |p| ELEMENT_SIZE * sizes.at(p);
+        let most = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
+        let sizes = ElementSize::new(mesh, boundary, most);
+        let size = |p| sizes.at(p);
         layout::conform(&regions, boundary, &Targets::new(&size, &minimum))
     })?;
     stages.block_layout = Some(conforming.repaired);
