@@ -148,6 +148,16 @@ impl BidirectedFlow {
         &self.values
     }
 
+    /// The variables.
+    pub fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    /// The general rows.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
     /// Σ w |n − ℓ| of the current values.
     pub fn cost(&self) -> f64 {
         self.variables.iter().zip(&self.values).map(|(v, &n)| v.weight * (n as f64 - v.target).abs()).sum()
@@ -259,13 +269,13 @@ impl BidirectedFlow {
     }
 
     /// Cheapest walk from `start` to a state that `is_goal` accepts; marginal costs below 0 count as 0.
-    /// `banned` variables are not lowered. `Err`: the states that were reached.
+    /// `banned` variables are not lowered, and rows that have nothing to spare at a high price
+    /// only (they are satisfied anew afterwards). `Err`: the states that were reached.
     fn search(
         &mut self,
         start: u32,
         is_goal: impl Fn(&Self, u32) -> bool,
         banned: &[u32],
-        rob_rows: bool,
     ) -> Result<(i64, Vec<Step>), Vec<u32>> {
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.round += 1;
@@ -295,9 +305,6 @@ impl BidirectedFlow {
                     }
                     for &r in &self.rows_of[a] {
                         if self.row_sums[r as usize] <= self.rows[r as usize].at_least {
-                            if !rob_rows {
-                                return;
-                            }
                             cost += ROW_PENALTY * (1 + self.robbed[r as usize]);
                         }
                     }
@@ -372,7 +379,7 @@ impl BidirectedFlow {
                 };
                 let mut banned = Vec::new();
                 loop {
-                    match self.search(start, goal, &banned, false) {
+                    match self.search(start, goal, &banned) {
                         Err(states) => return Err(Self::obstruction(&states)),
                         Ok((_, steps)) => {
                             let sum = Self::summed(&steps);
@@ -409,7 +416,7 @@ impl BidirectedFlow {
                 // Lowering the variable again would undo the walk.
                 let mut banned = vec![a];
                 for _ in 0..20 {
-                    match self.search(start, |_, s| s == goal, &banned, true) {
+                    match self.search(start, |_, s| s == goal, &banned) {
                         Err(states) => {
                             seen.extend(states);
                             break;
