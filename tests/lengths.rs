@@ -58,7 +58,8 @@ fn brute_force(equations: usize, variables: &[Variable], rows: &[Row], top: i32)
         let rows_hold =
             rows.iter().all(|r| r.variables.iter().map(|&a| n[a as usize]).sum::<i32>() >= r.at_least);
         if rows_hold && sums.iter().all(|&s| s == 0) {
-            let cost: f64 = variables.iter().zip(&n).map(|(v, &x)| v.weight * (x as f64 - v.target).abs()).sum();
+            let cost: f64 =
+                variables.iter().zip(&n).map(|(v, &x)| v.weight * (x as f64 - v.target).abs()).sum();
             best = Some(best.map_or(cost, |b| b.min(cost)));
         }
         let Some(i) = (0..n.len()).find(|&i| n[i] < top) else { return best };
@@ -151,7 +152,9 @@ fn random_t_mesh(cuts: usize, seed: u64) -> (Boundary, BlockLayout) {
         // Of a few regions the largest, so that sizes stay comparable.
         let area = |r: &u32| {
             let p = layout.polygon(*r);
-            (0..p.len()).map(|i| p[i].x * p[(i + 1) % p.len()].y - p[i].y * p[(i + 1) % p.len()].x).sum::<f64>()
+            (0..p.len())
+                .map(|i| p[i].x * p[(i + 1) % p.len()].y - p[i].y * p[(i + 1) % p.len()].x)
+                .sum::<f64>()
         };
         let candidates: Vec<u32> = (0..6).map(|_| random.below(layout.regions.len()) as u32).collect();
         let r = candidates.into_iter().max_by(|a, b| area(a).total_cmp(&area(b))).unwrap();
