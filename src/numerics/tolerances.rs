@@ -31,6 +31,7 @@ pub const PLACE_DISTANCE: f64 = 1e-9;
 
 /// Largest difference of arc lengths that are the same place, relative to the domain's diagonal.
 pub const SPAN_GAP: f64 = 1e-12;
+
 /// Gap at a joint, relative to the domain's diagonal, that is mere rounding: which of the two ends
 /// moves is then decided in the normalised orientation, so that loops given backwards agree.
 pub const JOIN_ROUNDING: f64 = 1e-12;
@@ -60,3 +61,7 @@ pub const TABLE_ERROR: f64 = 1e-11;
 /// Table intervals shorter than this, relative to the canonical diagonal, are not divided further: a
 /// singular parametrisation ends somewhere.
 pub const TABLE_SHORTEST: f64 = 1e-9;
+
+/// Distance along the tangent, relative to the domain's diagonal, at which a point of the exact curve
+/// is at the wanted arc length: a few roundings of a coordinate.
+pub const EXACT_FOOT: f64 = 1e-15;
