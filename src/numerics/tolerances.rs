@@ -24,3 +24,32 @@ pub const LONGEST_LOOP_SHARE: f64 = 1.0 / 3.0;
 
 /// Share of the boundary tolerance that placement aims at, so that vertices may still slide.
 pub const PLACEMENT_MARGIN: f64 = 0.9;
+/// Gap at a joint, relative to the domain's diagonal, that is mere rounding: which of the two ends
+/// moves is then decided in the normalised orientation, so that loops given backwards agree.
+pub const JOIN_ROUNDING: f64 = 1e-12;
+
+/// Distance, relative to the domain's diagonal, below which boundary curves touch. Gaps of 1e-5
+/// occur in real outlines and are meshed; below this no element has a sensible shape.
+pub const TOUCH: f64 = 1e-9;
+
+/// Size, relative to the domain's diagonal, of a segment or loop without extent.
+pub const NO_EXTENT: f64 = 1e-9;
+
+/// Interior angle, in radians, below which a corner is a cusp and refused (0.1°): the scaled Jacobian
+/// there cannot exceed its sine.
+pub const CUSP_ANGLE: f64 = 1.7e-3;
+
+/// A reversal of direction that is exact up to this, in radians: the sign of the turn then says
+/// nothing about the side.
+pub const REVERSAL: f64 = 1e-7;
+
+/// Difference of canonical lengths that is rounding when poses are compared.
+pub const POSE_TIE: f64 = 1e-9;
+
+/// Largest distance of the boundary tables' interpolant from a smooth curve, relative to the canonical
+/// diagonal: far below any tolerance a caller can ask for in double precision.
+pub const TABLE_ERROR: f64 = 1e-11;
+
+/// Table intervals shorter than this, relative to the canonical diagonal, are not divided further: a
+/// singular parametrisation ends somewhere.
+pub const TABLE_SHORTEST: f64 = 1e-9;
