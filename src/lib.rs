@@ -15,6 +15,7 @@ pub mod refine;
 pub mod separatrices;
 pub mod singularities;
 pub mod stages;
+pub mod statistics;
 
 pub use error::{Error, Result};
 pub use options::Options;
