@@ -5,6 +5,7 @@ pub mod base_mesh;
 pub mod cross_field;
 pub mod domain;
 pub mod error;
+pub mod input;
 pub mod layout;
 pub mod mesh;
 pub mod numerics;
@@ -14,6 +15,7 @@ pub mod progress;
 pub mod refine;
 pub mod separatrices;
 pub mod singularities;
+pub mod smooth;
 pub mod stages;
 pub mod statistics;
 

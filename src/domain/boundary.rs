@@ -90,6 +90,10 @@ pub struct Boundary {
     pub loops: Vec<Vec<u32>>,
     /// Area of the domain, in the canonical frame.
     pub area: f64,
+    /// For each loop its index in [`Domain::loops`](crate::domain::Domain::loops).
+    pub loop_sources: Vec<u32>,
+    /// Diagonal D of the caller's bounding box, in the canonical frame: relative tolerances refer to it.
+    pub diagonal: f64,
 }
 
 impl Chain {

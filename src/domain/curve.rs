@@ -1,6 +1,7 @@
 //! The one thing quadrel needs of a boundary curve.
 
 use crate::numerics::{Point, Vector};
+use std::sync::Arc;
 
 /// Why a curve could not be evaluated, in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,5 +22,17 @@ pub trait Curve: Send + Sync {
     /// (knots of a spline): quadrature stops there.
     fn breaks(&self) -> &[f64] {
         &[]
+    }
+
+    /// Whether the curve is a straight segment.
+    fn is_line(&self) -> bool {
+        false
+    }
+
+    /// The same curve with its end at t = 0 or 1 (`at_one`) moved to `p`, if the kind of curve has a
+    /// natural way to do that; else a linear function of t is added to it.
+    fn with_end(&self, at_one: bool, p: Point) -> Option<Arc<dyn Curve>> {
+        let _ = (at_one, p);
+        None
     }
 }

@@ -5,10 +5,39 @@
 //! clockwise: the domain lies to the left) and its [`Boundary`], the arc-length tables in the
 //! canonical frame that every later stage works with.
 
+mod arc;
+mod bezier;
 mod boundary;
+mod boundary_check;
+mod boundary_loop;
+mod bounds;
+mod builder;
+mod callback;
+mod canonical;
+mod crossing;
 mod curve;
+mod differences;
 mod frame;
+mod gauss;
+mod junction;
+mod line;
+mod nesting;
+mod planar_domain;
+mod segment;
+mod segment_table;
+mod spline;
+mod tables;
 
+pub use arc::EllipticArc;
+pub use bezier::Bezier;
 pub use boundary::{Boundary, BoundaryPoint, Chain, Junction, Place, Sample, Span};
+pub use boundary_loop::{BoundaryLoop, LoopKind};
+pub use bounds::Bounds;
+pub use builder::DomainBuilder;
+pub use callback::{CallbackCurve, CurveFn};
 pub use curve::{Curve, CurveFailure};
 pub use frame::Frame;
+pub use line::Line;
+pub use planar_domain::Domain;
+pub use segment::CurveSegment;
+pub use spline::CubicSpline;

@@ -24,3 +24,111 @@ pub const LONGEST_LOOP_SHARE: f64 = 1.0 / 3.0;
 
 /// Share of the boundary tolerance that placement aims at, so that vertices may still slide.
 pub const PLACEMENT_MARGIN: f64 = 0.9;
+/// Usual base edge, relative to the domain's diagonal. About 1/28 resolves the field of simple shapes;
+/// the odd digits keep sides of simple ratio (1/2, 1/√2) away from a tie.
+pub const BASE_EDGE_DIAGONAL: f64 = 1.0 / 27.37;
+
+/// Usual base edge, relative to the square root of the domain's area: long thin domains need
+/// more triangles than their diagonal tells.
+pub const BASE_EDGE_AREA: f64 = 1.0 / 16.23;
+
+/// Most that the boundary may turn along one chord of the base mesh, in radians. Coarser than
+/// 0.3 loses the field's rotation around airfoil noses.
+pub const CHORD_TURN: f64 = 0.21;
+
+/// Most that the two chords at a corner may turn, as a share of the corner's angle: the polygon's
+/// corner must stay like the boundary's.
+pub const CORNER_CHORD_TURN: f64 = 0.31;
+
+/// Largest ratio of the lengths of neighbouring chords.
+pub const CHORD_RATIO: f64 = 2.6;
+
+/// Height of the arc over its chord, relative to the gap to the boundary across, above which
+/// the chord is halved: below, the polygon's gap is the boundary's within a fifth.
+pub const CHORD_SAGITTA: f64 = 0.11;
+
+/// Border vertices of the base mesh lie on a grid of this spacing, relative to the diagonal, so that
+/// rounding noise in the input leaves the base mesh the same to the bit. 2^-26.
+pub const SNAP_GRID: f64 = 1.0 / 67_108_864.0;
+
+/// Chord length, relative to the diagonal, below which border vertices are not moved to the grid:
+/// there the grid would turn chords by more than 1e-3 rad.
+pub const SNAP_LEAST_CHORD: f64 = 1e-5;
+
+/// Least angle asked of the base triangles, in degrees; Delaunay refinement ends for sure
+/// below about 20.7° and in practice up to 30°.
+pub const BASE_ANGLE: f64 = 26.0;
+
+/// Corner angle in radians (45°) below which the field gets no quad there: the tip's region
+/// is a triangle, which the layout repairs by the paper's rule.
+pub const TIP_ANGLE: f64 = std::f64::consts::FRAC_PI_4;
+
+/// Width of a tie in Table 1, in quarter turns: at exactly 45°, 135°, 225° and 315° rounding noise
+/// must not choose the number of quads.
+pub const CORNER_TIE: f64 = 1e-6;
+
+/// Diffusion time of one diffuse-and-renormalise step, relative to the domain's area. Ten times as
+/// much breaks symmetric stars and adds pairs of singularities in annuli.
+pub const DIFFUSION_TIME: f64 = 2e-3;
+
+/// Number of diffuse-and-renormalise steps; 20 give no better fields.
+pub const DIFFUSION_STEPS: usize = 5;
+
+/// Farthest that the sum of the turns around a base triangle may be from whole quarter turns, in radians.
+/// Rounding leaves about 1e-14.
+pub const WINDING_ROUNDING: f64 = 1e-6;
+
+/// Least barycentric coordinate of a singular point in its triangle, so that its ports stay apart.
+pub const SINGULAR_BARYCENTRIC: f64 = 0.1;
+
+/// Least distance of a port from the triangle's corners, as a share of the edge.
+pub const PORT_SHARE: f64 = 1e-3;
+
+/// Distance between singularities of equal sign, in local edge lengths, below which the base mesh is
+/// refined between them.
+pub const LIKE_SIGN_EDGES: f64 = 2.0;
+
+/// Most that the cross may turn along a base edge at the border, in radians, where no singularity
+/// is: beyond, the edge's turn is close to the tie at 45°.
+pub const BORDER_EDGE_TURN: f64 = 0.5;
+
+/// Base edge, relative to the usual one, below which no check asks for refinement: singularities
+/// of a multiple zero come closer with every refinement.
+pub const LEAST_REFINEMENT: f64 = 1.0 / 12.0;
+
+/// Corner angle in radians (60°) below which Delaunay refinement cannot enforce its angle bound: base
+/// triangles at such tips are left as they are.
+pub const SHARP_TIP: f64 = std::f64::consts::FRAC_PI_3;
+/// Largest difference between the layout regions' areas and the domain's, relative to the domain's area:
+/// traces and base mesh are polygons, so areas agree only roughly; a region counted twice or missing
+/// differs by more.
+pub const LAYOUT_AREA: f64 = 0.05;
+/// Gap at a joint, relative to the domain's diagonal, that is mere rounding: which of the two ends
+/// moves is then decided in the normalised orientation, so that loops given backwards agree.
+pub const JOIN_ROUNDING: f64 = 1e-12;
+
+/// Distance, relative to the domain's diagonal, below which boundary curves touch. Gaps of 1e-5
+/// occur in real outlines and are meshed; below this no element has a sensible shape.
+pub const TOUCH: f64 = 1e-9;
+
+/// Size, relative to the domain's diagonal, of a segment or loop without extent.
+pub const NO_EXTENT: f64 = 1e-9;
+
+/// Interior angle, in radians, below which a corner is a cusp and refused (0.1°): the scaled Jacobian
+/// there cannot exceed its sine.
+pub const CUSP_ANGLE: f64 = 1.7e-3;
+
+/// A reversal of direction that is exact up to this, in radians: the sign of the turn then says
+/// nothing about the side.
+pub const REVERSAL: f64 = 1e-7;
+
+/// Difference of canonical lengths that is rounding when poses are compared.
+pub const POSE_TIE: f64 = 1e-9;
+
+/// Largest distance of the boundary tables' interpolant from a smooth curve, relative to the canonical
+/// diagonal: far below any tolerance a caller can ask for in double precision.
+pub const TABLE_ERROR: f64 = 1e-11;
+
+/// Table intervals shorter than this, relative to the canonical diagonal, are not divided further: a
+/// singular parametrisation ends somewhere.
+pub const TABLE_SHORTEST: f64 = 1e-9;

@@ -8,10 +8,14 @@
 //! error (de Boor's equidistribution, *Good approximation by splines with variable knots*, 1973).
 //! [`place_by_halving`] is the paper's own rule (Algorithm 1).
 
+mod divide;
 mod halving;
+mod meet;
 mod pieces;
 mod placement;
 
+pub use divide::divide_chords;
 pub use halving::place_by_halving;
+pub use meet::{meet_tolerance, slide_to_tolerance};
 pub use pieces::least_pieces;
 pub use placement::{place_equal_error, Placement};

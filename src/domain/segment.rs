@@ -1,0 +1,271 @@
+//! A curve segment as part of a loop: the caller's curve, walked in the loop's direction and joined
+//! to its neighbours.
+
+use crate::domain::curve::{Curve, CurveFailure};
+use crate::domain::differences;
+use crate::domain::gauss::{snap, GaussRule};
+use crate::error::{Error, Result};
+use crate::numerics::{Point, Vector};
+use std::sync::Arc;
+
+/// A curve segment of a loop.
+#[derive(Clone)]
+pub struct CurveSegment {
+    curve: Arc<dyn Curve>,
+    name: String,
+    /// Walked against the curve's own parameter.
+    reversed: bool,
+    /// Added linearly: the first at t = 0, the second at t = 1 (closes small gaps at joints).
+    correction: [Vector; 2],
+    /// Its number and its loop's in the caller's order.
+    index: usize,
+    loop_index: usize,
+}
+
+impl CurveSegment {
+    pub(crate) fn new(curve: Arc<dyn Curve>, name: String, loop_index: usize, index: usize) -> Self {
+        CurveSegment { curve, name, reversed: false, correction: [Vector::zeros(); 2], index, loop_index }
+    }
+
+    /// Name of its boundary.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its number among the segments of its loop, in the caller's order.
+    pub fn index(&self) -> usize {
+        self.index
+    }
+
+    /// Whether it is walked against the caller's parameter: the caller's t is then 1 − t.
+    pub fn is_reversed(&self) -> bool {
+        self.reversed
+    }
+
+    /// Whether it is a straight line.
+    pub fn is_line(&self) -> bool {
+        self.curve.is_line()
+    }
+
+    /// The parameter in the caller's sense.
+    pub fn caller_parameter(&self, t: f64) -> f64 {
+        if self.reversed {
+            1.0 - t
+        } else {
+            t
+        }
+    }
+
+    fn failure(&self, t: f64, reason: String) -> Error {
+        let t = self.caller_parameter(t);
+        Error::Callback { loop_index: self.loop_index, segment: self.index, t, reason }
+    }
+
+    /// The point at `t` in [0, 1], in the loop's direction and the caller's unit.
+    pub fn point(&self, t: f64) -> Result<Point> {
+        match self.curve.point(self.caller_parameter(t)) {
+            Ok(p) => {
+                let p = p + self.correction[0] * (1.0 - t) + self.correction[1] * t;
+                if p.x.is_finite() && p.y.is_finite() {
+                    Ok(p)
+                } else {
+                    Err(self.failure(t, format!("the point ({}, {}) is not finite", p.x, p.y)))
+                }
+            }
+            Err(CurveFailure(reason)) => Err(self.failure(t, reason)),
+        }
+    }
+
+    /// d/dt at `t`. It may vanish, or be infinite where the caller's parametrisation is singular.
+    pub fn derivative(&self, t: f64) -> Result<Vector> {
+        let own = self.caller_parameter(t);
+        let d = match self.curve.derivative(own) {
+            Some(d) => d,
+            None => differences::derivative(|t| self.curve.point(t), own),
+        };
+        let d = d.map_err(|CurveFailure(reason)| self.failure(t, reason))?;
+        Ok(if self.reversed { -d } else { d } + (self.correction[1] - self.correction[0]))
+    }
+
+    /// d/dt at `t`, refused if it is not finite.
+    pub(crate) fn finite_derivative(&self, t: f64) -> Result<Vector> {
+        let d = self.derivative(t)?;
+        if d.x.is_finite() && d.y.is_finite() {
+            Ok(d)
+        } else {
+            Err(self.failure(t, "the derivative is not finite".into()))
+        }
+    }
+
+    /// Unit tangent at `t` strictly inside (0, 1), also where the parametrisation stands still.
+    pub(crate) fn tangent(&self, t: f64) -> Result<Vector> {
+        let d = self.derivative(t)?;
+        let n = d.norm();
+        if n.is_finite() && n > 0.0 {
+            return Ok(d / n);
+        }
+        let room = t.min(1.0 - t);
+        for k in [20, 14, 8, 2] {
+            let h = room * 0.5f64.powi(k);
+            let d = self.point(t + h)? - self.point(t - h)?;
+            if d.norm() > 0.0 {
+                return Ok(d.normalize());
+            }
+        }
+        self.end_tangent(false)
+    }
+
+    /// Its first point.
+    pub fn start(&self) -> Result<Point> {
+        self.point(0.0)
+    }
+
+    /// Its last point.
+    pub fn end(&self) -> Result<Point> {
+        self.point(1.0)
+    }
+
+    /// Parameters from 0 to 1, both included, between which it is smooth.
+    pub fn pieces(&self) -> Vec<f64> {
+        let mut t = vec![0.0];
+        t.extend(self.curve.breaks().iter().map(|&b| snap(b)).filter(|&b| b > 0.0 && b < 1.0));
+        if self.reversed {
+            t[1..].reverse();
+            t[1..].iter_mut().for_each(|b| *b = 1.0 - *b);
+        }
+        t.push(1.0);
+        t.dedup();
+        t
+    }
+
+    /// Parameters that show its shape: the pieces' ends and points between them at dyadic shares.
+    pub(crate) fn sample_parameters(&self) -> Vec<f64> {
+        if self.is_line() {
+            return vec![0.0, 1.0];
+        }
+        let pieces = self.pieces();
+        let per_piece = if pieces.len() > 2 { 4 } else { 64 };
+        let mut t = Vec::with_capacity(per_piece * (pieces.len() - 1) + 1);
+        for w in pieces.windows(2) {
+            t.extend((0..per_piece).map(|k| snap(w[0] + (w[1] - w[0]) * k as f64 / per_piece as f64)));
+        }
+        t.push(1.0);
+        t
+    }
+
+    /// Points that show its shape, both ends included.
+    pub fn sample(&self) -> Result<Vec<Point>> {
+        self.sample_parameters().into_iter().map(|t| self.point(t)).collect()
+    }
+
+    /// Diagonal of the bounding box of a few of its points.
+    pub(crate) fn size(&self) -> Result<f64> {
+        let mut bounds = crate::domain::Bounds::new();
+        for k in 0..=8 {
+            bounds.add(self.point(k as f64 / 8.0)?);
+        }
+        Ok(bounds.diagonal())
+    }
+
+    /// The same segment walked backwards.
+    pub(crate) fn reverse(&mut self) {
+        self.reversed = !self.reversed;
+        self.correction.swap(0, 1);
+    }
+
+    /// Moves its end at t = 1 (`at_end`) or 0 to `to`.
+    pub(crate) fn move_end(&mut self, at_end: bool, to: Point) -> Result<()> {
+        if self.correction == [Vector::zeros(); 2] {
+            if let Some(curve) = self.curve.with_end(at_end != self.reversed, to) {
+                self.curve = curve;
+                return Ok(());
+            }
+        }
+        let shift = to - self.point(if at_end { 1.0 } else { 0.0 })?;
+        self.correction[usize::from(at_end)] += shift;
+        Ok(())
+    }
+
+    /// Unit tangent in the direction of travel at t = 1 (`at_end`) or 0: the limit where the derivative
+    /// vanishes or is infinite.
+    pub fn end_tangent(&self, at_end: bool) -> Result<Vector> {
+        let size = self.size()?;
+        let (end, inward) = if at_end { (1.0, -1.0) } else { (0.0, 1.0) };
+        let d = self.derivative(end)?;
+        let n = d.norm();
+        if n.is_finite() && n > 1e-7 * size {
+            return Ok(d / n);
+        }
+        // Two directions near the end, extrapolated to it.
+        for k in [16, 13, 10, 7, 4] {
+            let h = 0.5f64.powi(k);
+            let a = self.derivative(end + inward * h)?;
+            let b = self.derivative(end + inward * 0.5 * h)?;
+            let (na, nb) = (a.norm(), b.norm());
+            if na.is_finite() && nb.is_finite() && na.min(nb) > 1e-10 * size {
+                let t = b / nb * 2.0 - a / na;
+                if t.norm() > 0.5 {
+                    return Ok(t.normalize());
+                }
+            }
+        }
+        let chord = self.end()? - self.start()?;
+        let n = chord.norm();
+        Ok(if n > 0.0 { chord / n } else { Vector::new(1.0, 0.0) })
+    }
+
+    /// Whether its points alone, compared lexicographically, prefer this direction to the opposite:
+    /// computations done in the preferred direction do not depend on how the caller walked it.
+    pub(crate) fn prefers_this_direction(&self) -> Result<bool> {
+        let (mut a, mut b) = (self.start()?, self.end()?);
+        for t in [0.25, 0.125, 0.375] {
+            if a != b {
+                break;
+            }
+            (a, b) = (self.point(t)?, self.point(1.0 - t)?);
+        }
+        Ok((a.x, a.y) <= (b.x, b.y))
+    }
+
+    /// Integrates `f(point − origin, derivative)` over t in [0, 1]; several integrals at once.
+    pub(crate) fn integrate<const K: usize>(
+        &self,
+        origin: Point,
+        f: impl Fn(Vector, Vector) -> [f64; K],
+    ) -> Result<[f64; K]> {
+        let pieces = self.pieces();
+        let (rule, parts) = match (self.is_line(), pieces.len()) {
+            (true, _) => (GaussRule::two(), 1),
+            (_, 2) => (GaussRule::sixteen(), 8),
+            _ => (GaussRule::eight(), 1),
+        };
+        let mut sum = [0.0; K];
+        for w in pieces.windows(2) {
+            let h = (w[1] - w[0]) / parts as f64;
+            for part in 0..parts {
+                let a = w[0] + part as f64 * h;
+                for (x, weight) in rule.nodes.iter().zip(&rule.weights) {
+                    let t = snap(a + h * x);
+                    let d = self.finite_derivative(t)?;
+                    let value = f(self.point(t)? - origin, d);
+                    for k in 0..K {
+                        sum[k] += h * weight * value[k];
+                    }
+                }
+            }
+        }
+        Ok(sum)
+    }
+}
+
+impl std::fmt::Debug for CurveSegment {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("CurveSegment")
+            .field("name", &self.name)
+            .field("index", &self.index)
+            .field("reversed", &self.reversed)
+            .field("start", &self.start().ok())
+            .field("end", &self.end().ok())
+            .finish()
+    }
+}

@@ -1,0 +1,115 @@
+//! Where the separatrices of a singularity leave its triangle.
+
+use crate::cross_field::TriangleCross;
+use crate::numerics::tolerances::PORT_SHARE;
+use crate::numerics::{cross, Point};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Intervals in which each edge is searched.
+const INTERVALS: usize = 24;
+/// Bisections of an interval: to 2^-40 of it.
+const BISECTIONS: usize = 40;
+
+/// The border of a singular triangle, seen from the singular point.
+struct View<'a> {
+    corners: [Point; 3],
+    field: &'a TriangleCross,
+    point: Point,
+    /// Direction from the point to each corner, lifted; the fourth is the first after a full turn.
+    directions: [f64; 4],
+    /// How much the direction minus the cross turns in all, a multiple of π/2, over 2π.
+    slope: f64,
+    /// The mean of (direction minus cross) less its share that grows with the direction.
+    phase: f64,
+}
+
+impl<'a> View<'a> {
+    fn new(corners: [Point; 3], field: &'a TriangleCross, point: Point, valence: u8) -> Self {
+        let to = corners.map(|c| c - point);
+        let mut directions = [to[0].y.atan2(to[0].x); 4];
+        for i in 0..3 {
+            let (a, b) = (to[i], to[(i + 1) % 3]);
+            directions[i + 1] = directions[i] + cross(a, b).atan2(a.dot(&b));
+        }
+        let slope = f64::from(valence) / 4.0;
+        let mut view = View { corners, field, point, directions, slope, phase: 0.0 };
+        let count = 3 * INTERVALS;
+        view.phase = (0..count)
+            .map(|k| (k / INTERVALS, (k % INTERVALS) as f64 / INTERVALS as f64 + 0.5 / INTERVALS as f64))
+            .map(|(edge, share)| view.excess(edge, share, 0.0) - view.slope * view.direction(edge, share))
+            .sum::<f64>()
+            / count as f64;
+        view
+    }
+
+    /// Direction from the singular point to a point of the border, lifted.
+    fn direction(&self, edge: usize, share: f64) -> f64 {
+        let (a, b) = (self.corners[edge], self.corners[(edge + 1) % 3]);
+        let (from, to) = (a - self.point, a + (b - a) * share - self.point);
+        self.directions[edge] + cross(from, to).atan2(from.dot(&to))
+    }
+
+    /// Direction minus cross, blended by `evenness` with its part that grows evenly.
+    fn excess(&self, edge: usize, share: f64, evenness: f64) -> f64 {
+        let direction = self.direction(edge, share);
+        let angle = self.field.start_of_edge(edge) + share * self.field.edge_turn[edge];
+        let even = self.slope * direction + self.phase;
+        (1.0 - evenness) * (direction - angle) + evenness * even
+    }
+
+    /// Whether the blended excess grows all the way around, so that it takes every value once.
+    fn grows(&self, evenness: f64) -> bool {
+        let mut last = f64::NEG_INFINITY;
+        for edge in 0..3 {
+            for k in 0..=INTERVALS {
+                let value = self.excess(edge, k as f64 / INTERVALS as f64, evenness);
+                if value < last {
+                    return false;
+                }
+                last = value;
+            }
+        }
+        last <= self.excess(0, 0.0, evenness) + 2.0 * PI * self.slope + 1e-9
+    }
+
+    /// The border point where the blended excess, which grows, reaches `level`.
+    fn solve(&self, level: f64, evenness: f64) -> (usize, f64) {
+        // A level inside the jump at a corner belongs to the end of the edge before it.
+        let edge = (0..3).find(|&e| self.excess(e, 1.0, evenness) >= level).unwrap_or(2);
+        if self.excess(edge, 0.0, evenness) > level {
+            return (edge, 0.0);
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            match self.excess(edge, middle, evenness) < level {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        (edge, 0.5 * (low + high))
+    }
+}
+
+/// The ports (edge, share) in counter-clockwise order, `valence` of them.
+///
+/// They are where the cross points away from `point`. If the linear field turns so unevenly that there
+/// are more such places, it is blended with the field that turns evenly about the point (the conformal
+/// part), as little as makes the number right.
+pub(super) fn ports(corners: [Point; 3], field: &TriangleCross, point: Point, valence: u8) -> Vec<(u8, f64)> {
+    let view = View::new(corners, field, point, valence);
+    let blends = [0.0, 0.25, 0.5, 0.75];
+    let evenness = blends.into_iter().find(|&e| view.grows(e)).unwrap_or(1.0);
+    let first = (view.excess(0, 0.0, evenness) / FRAC_PI_2).ceil();
+    let mut ports: Vec<(u8, f64)> = (0..valence)
+        .map(|k| view.solve((first + f64::from(k)) * FRAC_PI_2, evenness))
+        .map(|(edge, share)| (edge as u8, share.clamp(PORT_SHARE, 1.0 - PORT_SHARE)))
+        .collect();
+    // Ports pushed off the same corner stay apart and in order.
+    for k in 1..ports.len() {
+        if ports[k].0 == ports[k - 1].0 && ports[k].1 <= ports[k - 1].1 {
+            ports[k].1 = ports[k - 1].1 + 0.1 * (1.0 - ports[k - 1].1);
+        }
+    }
+    ports
+}

@@ -1,0 +1,174 @@
+//! Limited-memory BFGS with a diagonal metric and a line search that never leaves the feasible set.
+//!
+//! Reference: J. Nocedal, S. Wright, *Numerical Optimization*, 2006, §7.2 (two-loop recursion).
+
+/// Pairs kept.
+const MEMORY: usize = 10;
+/// Sufficient decrease (Armijo).
+const DECREASE: f64 = 1e-4;
+/// Halvings of one line search.
+const HALVINGS: usize = 20;
+
+/// A function to minimise; infinite where infeasible.
+pub(super) trait Objective {
+    /// The value at `x`; its gradient is written to `gradient` if the value is finite.
+    fn evaluate(&mut self, x: &[f64], gradient: &mut [f64]) -> f64;
+}
+
+/// When to stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Limits {
+    /// Most iterations.
+    pub steps: usize,
+    /// Stop when five steps together decrease the value by less than this share.
+    pub progress: f64,
+}
+
+/// What came out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Minimum {
+    pub value: f64,
+    pub evaluations: usize,
+}
+
+/// Work space, kept between runs so that nothing is allocated inside.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Lbfgs {
+    s: Vec<Vec<f64>>,
+    y: Vec<Vec<f64>>,
+    sy: [f64; MEMORY],
+    gradient: Vec<f64>,
+    next_gradient: Vec<f64>,
+    next: Vec<f64>,
+    direction: Vec<f64>,
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl Lbfgs {
+    fn resize(&mut self, n: usize) {
+        self.s.resize_with(MEMORY, Vec::new);
+        self.y.resize_with(MEMORY, Vec::new);
+        for v in self.s.iter_mut().chain(&mut self.y).chain([
+            &mut self.gradient,
+            &mut self.next_gradient,
+            &mut self.next,
+            &mut self.direction,
+        ]) {
+            v.resize(n, 0.0);
+        }
+    }
+
+    /// Minimises from `x`, which must be feasible, and leaves the best point there. `metric[i]` is the
+    /// square of a length natural to variable i: the first inverse Hessian up to a factor. No
+    /// variable moves further than `reach` · √metric in one step.
+    pub fn minimise(
+        &mut self,
+        objective: &mut impl Objective,
+        x: &mut [f64],
+        metric: &[f64],
+        reach: f64,
+        limits: Limits,
+    ) -> Minimum {
+        let n = x.len();
+        self.resize(n);
+        let mut value = objective.evaluate(x, &mut self.gradient);
+        let mut evaluations = 1;
+        let (mut kept, mut head) = (0, 0);
+        let mut history = [f64::INFINITY; 5];
+        for step in 0..limits.steps {
+            if n == 0 || !value.is_finite() {
+                break;
+            }
+            self.descent(metric, kept, head);
+            let mut slope = dot(&self.direction, &self.gradient);
+            if slope >= 0.0 {
+                (kept, head) = (0, 0);
+                self.descent(metric, kept, head);
+                slope = dot(&self.direction, &self.gradient);
+                if slope >= 0.0 {
+                    break;
+                }
+            }
+            // The longest move in units of the variables' own lengths.
+            let longest = self.direction.iter().zip(metric).fold(0.0f64, |m, (d, h)| m.max(d * d / h)).sqrt();
+            let mut t = if longest > reach { reach / longest } else { 1.0 };
+            let mut found = None;
+            for _ in 0..HALVINGS {
+                for (k, next) in self.next.iter_mut().enumerate() {
+                    *next = x[k] + t * self.direction[k];
+                }
+                let trial = objective.evaluate(&self.next, &mut self.next_gradient);
+                evaluations += 1;
+                if trial <= value + DECREASE * t * slope {
+                    found = Some(trial);
+                    break;
+                }
+                // A parabola through the values where there are any, else plain halving.
+                let parabola = -0.5 * slope * t * t / (trial - value - slope * t);
+                t = if parabola.is_finite() { parabola.clamp(0.1 * t, 0.5 * t) } else { 0.4 * t };
+            }
+            let Some(trial) = found else {
+                if kept == 0 {
+                    break;
+                }
+                (kept, head) = (0, 0);
+                continue;
+            };
+            let (s, y) = (&mut self.s[head], &mut self.y[head]);
+            for k in 0..n {
+                s[k] = self.next[k] - x[k];
+                y[k] = self.next_gradient[k] - self.gradient[k];
+                x[k] = self.next[k];
+            }
+            let sy = dot(s, y);
+            if sy > 1e-10 * (dot(s, s) * dot(y, y)).sqrt() {
+                self.sy[head] = sy;
+                head = (head + 1) % MEMORY;
+                kept = (kept + 1).min(MEMORY);
+            }
+            std::mem::swap(&mut self.gradient, &mut self.next_gradient);
+            value = trial;
+            let before = std::mem::replace(&mut history[step % 5], value);
+            if before - value < limits.progress * value.abs() {
+                break;
+            }
+        }
+        Minimum { value, evaluations }
+    }
+
+    /// Two-loop recursion: the descent direction for the present gradient.
+    fn descent(&mut self, metric: &[f64], kept: usize, head: usize) {
+        let d = &mut self.direction;
+        for (d, g) in d.iter_mut().zip(&self.gradient) {
+            *d = -g;
+        }
+        let mut alpha = [0.0; MEMORY];
+        for age in 1..=kept {
+            let i = (head + MEMORY - age) % MEMORY;
+            alpha[i] = dot(&self.s[i], d) / self.sy[i];
+            for (d, y) in d.iter_mut().zip(&self.y[i]) {
+                *d -= alpha[i] * y;
+            }
+        }
+        let gamma = if kept == 0 {
+            1.0
+        } else {
+            let i = (head + MEMORY - 1) % MEMORY;
+            let weighted: f64 = self.y[i].iter().zip(metric).map(|(y, h)| y * y * h).sum();
+            self.sy[i] / weighted
+        };
+        for (d, h) in d.iter_mut().zip(metric) {
+            *d *= gamma * h;
+        }
+        for age in (1..=kept).rev() {
+            let i = (head + MEMORY - age) % MEMORY;
+            let beta = dot(&self.y[i], d) / self.sy[i];
+            for (d, s) in d.iter_mut().zip(&self.s[i]) {
+                *d += (alpha[i] - beta) * s;
+            }
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! The one optimiser: untangles if it must, then raises the power of the shape energy.
+
+use super::edge_error::BoundaryTolerance;
+use super::kernel::Measure;
+use super::minimiser::{Lbfgs, Limits};
+use super::problem::Problem;
+use super::quality::{self, ElementQuality, Quality};
+use super::reference::Reference;
+use super::untangle::untangle;
+use crate::domain::Boundary;
+use crate::mesh::QuadMesh;
+
+/// How much work an optimisation may cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// For a trial that may be rolled back: valid and fair.
+    Quick,
+    /// For a mesh to be kept.
+    Full,
+}
+
+/// What an optimisation left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// No sample of the optimised elements is inverted.
+    pub valid: bool,
+    /// Least scaled Jacobian of the optimised elements, by sampling.
+    pub min_scaled_jacobian: f64,
+    /// Largest error of the boundary edges that moved, divided by the tolerance.
+    pub error_ratio: f64,
+    /// Energy evaluations used.
+    pub evaluations: usize,
+}
+
+/// Step bound of the minimiser, in natural lengths.
+const REACH: f64 = 0.5;
+
+/// Sweeps of the relaxation that restarts a hopeless mesh.
+const FLATTEN_SWEEPS: usize = 200;
+
+struct Schedule {
+    powers: &'static [u32],
+    steps: usize,
+    progress: f64,
+    untangle_rounds: usize,
+    untangle_steps: usize,
+}
+
+impl Effort {
+    fn schedule(self) -> Schedule {
+        match self {
+            Effort::Quick => Schedule {
+                powers: &[2, 8],
+                steps: 20,
+                progress: 1e-2,
+                untangle_rounds: 6,
+                untangle_steps: 25,
+            },
+            Effort::Full => Schedule {
+                powers: &[2, 4, 8, 8],
+                steps: 60,
+                progress: 1e-4,
+                untangle_rounds: 20,
+                untangle_steps: 50,
+            },
+        }
+    }
+}
+
+/// Optimises and measures meshes of one domain at one order.
+#[derive(Debug, Clone)]
+pub struct Optimiser<'a> {
+    boundary: &'a Boundary,
+    tolerance: Option<BoundaryTolerance>,
+    energy: Reference,
+    measuring: Reference,
+}
+
+impl<'a> Optimiser<'a> {
+    /// For elements of order `order` (at least 1). With a tolerance, boundary edges that meet it keep
+    /// meeting it, and others are drawn towards it.
+    pub fn new(boundary: &'a Boundary, order: usize, tolerance: Option<BoundaryTolerance>) -> Self {
+        let order = order.max(1);
+        Optimiser {
+            boundary,
+            tolerance,
+            energy: Reference::for_energy(order),
+            measuring: Reference::for_quality(order),
+        }
+    }
+
+    /// The domain's boundary.
+    pub fn boundary(&self) -> &'a Boundary {
+        self.boundary
+    }
+
+    /// The boundary tolerance.
+    pub fn tolerance(&self) -> Option<BoundaryTolerance> {
+        self.tolerance
+    }
+
+    /// The polynomial order N.
+    pub fn order(&self) -> usize {
+        self.energy.order
+    }
+
+    /// Optimises `mesh` in place: all of it, or the quads `active`, whose vertices and edges move unless
+    /// a quad outside shares them. Once all samples are positive they stay so. If nothing valid is
+    /// found the mesh is left at the last try.
+    pub fn optimise(&self, mesh: &mut QuadMesh, active: Option<&[u32]>, effort: Effort) -> Outcome {
+        let schedule = effort.schedule();
+        let mut lbfgs = Lbfgs::default();
+        let mut evaluations = 0;
+        let new = |mesh: &QuadMesh, slide| {
+            Problem::new(self.boundary, &self.energy, self.tolerance, mesh, active, slide)
+        };
+        let mut problem = new(mesh, true);
+        let mut valid = problem.least_jacobian() > 0.0;
+        if !valid {
+            // First with the boundary fixed: sliding vertices would rather pile up than let go. If
+            // both fail, the start was worthless: the same from straight edges and mean positions.
+            for (slide, flatten) in [(false, false), (true, false), (false, true), (true, false)] {
+                problem = new(mesh, slide);
+                if flatten {
+                    if effort == Effort::Quick {
+                        break;
+                    }
+                    problem.flatten(FLATTEN_SWEEPS);
+                }
+                let (rounds, steps) = (schedule.untangle_rounds, schedule.untangle_steps);
+                valid = untangle(&mut problem, &mut lbfgs, rounds, steps, &mut evaluations);
+                problem.store(mesh);
+                if valid {
+                    break;
+                }
+            }
+            problem = new(mesh, true);
+            valid = problem.least_jacobian() > 0.0;
+        }
+        if valid {
+            for power in schedule.powers {
+                problem.measure = Measure::Shape(*power);
+                problem.refresh();
+                let mut x = std::mem::take(&mut problem.unknowns);
+                let metric = std::mem::take(&mut problem.metric);
+                let limits = Limits { steps: schedule.steps, progress: schedule.progress };
+                let minimum = lbfgs.minimise(&mut problem, &mut x, &metric, REACH, limits);
+                (problem.unknowns, problem.metric) = (x, metric);
+                evaluations += minimum.evaluations;
+            }
+            problem.refresh();
+        }
+        let error_ratio = problem.error_ratio();
+        problem.store(mesh);
+        let quality = self.quality_of(mesh, active);
+        Outcome {
+            valid: valid && quality.valid(),
+            min_scaled_jacobian: quality.min_scaled_jacobian,
+            error_ratio,
+            evaluations,
+        }
+    }
+
+    /// Quality of the whole mesh.
+    pub fn quality(&self, mesh: &QuadMesh) -> Quality {
+        self.quality_of(mesh, None)
+    }
+
+    /// Quality of the quads `of` (all if `None`) and the boundary edges on them.
+    pub fn quality_of(&self, mesh: &QuadMesh, of: Option<&[u32]>) -> Quality {
+        let mut elements = Vec::new();
+        let mut error = 0.0f64;
+        let mut add = |q: u32| {
+            elements.push(self.element_quality(mesh, q));
+            for e in mesh.quad_edges[q as usize] {
+                error = error.max(self.error_ratio(mesh, e));
+            }
+        };
+        match of {
+            Some(list) => list.iter().for_each(|q| add(*q)),
+            None => (0..mesh.quads.len() as u32).for_each(add),
+        }
+        Quality::new(elements, error)
+    }
+
+    /// Quality of one quad.
+    pub fn element_quality(&self, mesh: &QuadMesh, quad: u32) -> ElementQuality {
+        quality::element(self.boundary, &self.measuring, mesh, quad)
+    }
+
+    /// Error of an edge divided by the tolerance; 0 inside or without a tolerance.
+    pub fn error_ratio(&self, mesh: &QuadMesh, edge: u32) -> f64 {
+        quality::error_ratio(self.boundary, &self.measuring, self.tolerance, mesh, edge)
+    }
+}

@@ -1,0 +1,97 @@
+//! Tables on the reference edge: what turns an edge's unknowns into samples of its curve.
+
+use crate::numerics::{GaussLegendre, GaussLobatto, Interpolation};
+
+/// Most samples per direction: at high order the shapes that the optimiser can give an interior edge
+/// stay of low degree, so a denser grid would only cost time.
+pub(super) const MAX_SAMPLES: usize = 12;
+
+/// Most bubbles of an interior edge; edges of higher degree gained nothing measurable.
+pub(super) const MAX_BUBBLES: usize = 4;
+
+/// Quadrature points for the boundary error of one edge; fewer underestimate it at small kinks.
+const ERROR_POINTS: usize = 24;
+
+/// Samples, bubbles, Gauss-Lobatto nodes and quadrature on [0, 1]. Matrices are stored by columns:
+/// all samples of one unknown after another.
+#[derive(Debug, Clone)]
+pub(super) struct Reference {
+    pub order: usize,
+    /// Sample parameters, ascending with both ends, exactly symmetric.
+    pub samples: Vec<f64>,
+    /// Number of bubbles of an interior edge.
+    pub bubbles: usize,
+    /// `bubble[m * K + k]`: bubble m at sample k, and its derivative.
+    pub bubble: Vec<f64>,
+    pub bubble_slope: Vec<f64>,
+    /// The N + 1 nodes of a boundary edge.
+    pub nodes: Vec<f64>,
+    /// `lagrange[i * K + k]`: the Lagrange polynomial of node i at sample k, and its derivative.
+    pub lagrange: Vec<f64>,
+    pub lagrange_slope: Vec<f64>,
+    /// Quadrature of the boundary error.
+    pub error_points: Vec<f64>,
+    pub error_weights: Vec<f64>,
+    /// `error_lagrange[q * (N + 1) + i]`, and the derivative.
+    pub error_lagrange: Vec<f64>,
+    pub error_lagrange_slope: Vec<f64>,
+}
+
+/// Bubble 4 τ (1 − τ) P_m(2τ − 1) and its derivative in τ.
+pub(super) fn bubble(m: usize, tau: f64) -> (f64, f64) {
+    let x = 2.0 * tau - 1.0;
+    let (mut p, mut before, mut slope) = (1.0, 0.0, 0.0);
+    // P'_{k+1} = x P'_k + (k + 1) P_k, beside the three-term recurrence.
+    for k in 0..m {
+        let kf = k as f64;
+        let next = ((2.0 * kf + 1.0) * x * p - kf * before) / (kf + 1.0);
+        slope = x * slope + (kf + 1.0) * p;
+        (p, before) = (next, p);
+    }
+    let q = 4.0 * tau * (1.0 - tau);
+    (q * p, 4.0 * (1.0 - 2.0 * tau) * p + 2.0 * q * slope)
+}
+
+impl Reference {
+    /// Tables for elements of order `order` with `samples` samples along an edge.
+    pub fn new(order: usize, samples: usize) -> Self {
+        let unit = |x: &[f64]| -> Vec<f64> { x.iter().map(|x| 0.5 * (1.0 + x)).collect() };
+        let lobatto = GaussLobatto::new(order);
+        let at = GaussLobatto::new(samples - 1).nodes;
+        let interpolation = Interpolation::new(lobatto.nodes.clone());
+        let gauss = GaussLegendre::new(ERROR_POINTS.max(order + 6));
+        let samples = unit(&at);
+        let bubbles = (order - 1).min(MAX_BUBBLES);
+        let table: Vec<(f64, f64)> =
+            (0..bubbles).flat_map(|m| samples.iter().map(move |t| bubble(m, *t))).collect();
+        // nalgebra stores by columns: rows are targets, columns nodes. Slopes are per unit of [0, 1].
+        let slope = interpolation.derivative_matrix(&at) * 2.0;
+        let error = interpolation.matrix(&gauss.nodes).transpose();
+        let error_slope = (interpolation.derivative_matrix(&gauss.nodes) * 2.0).transpose();
+        Reference {
+            order,
+            bubbles,
+            bubble: table.iter().map(|b| b.0).collect(),
+            bubble_slope: table.iter().map(|b| b.1).collect(),
+            nodes: unit(&lobatto.nodes),
+            lagrange: interpolation.matrix(&at).as_slice().to_vec(),
+            lagrange_slope: slope.as_slice().to_vec(),
+            error_points: unit(&gauss.nodes),
+            error_weights: gauss.weights.iter().map(|w| 0.5 * w).collect(),
+            error_lagrange: error.as_slice().to_vec(),
+            error_lagrange_slope: error_slope.as_slice().to_vec(),
+            samples,
+        }
+    }
+
+    /// Tables for the optimiser: det J has degree 2N − 1, N + 2 samples with the ends see its sign
+    /// well enough; the proof of validity is made elsewhere.
+    pub fn for_energy(order: usize) -> Self {
+        Reference::new(order, (order + 2).clamp(3, MAX_SAMPLES))
+    }
+
+    /// Tables for measuring quality, about twice as dense.
+    pub fn for_quality(order: usize) -> Self {
+        Reference::new(order, (2 * order + 3).clamp(5, 2 * MAX_SAMPLES + 1))
+    }
+}

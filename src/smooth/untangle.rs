@@ -1,0 +1,51 @@
+//! From inverted to valid: the regularised energy, made less regular step by step.
+//!
+//! Reference: V. Garanzha, I. Kaporin, L. Kudryavtseva, F. Protais, N. Ray, D. Sokolov, *Foldover-free
+//! maps in 50 lines of code*, ACM Transactions on Graphics 40(4), 2021 (the rule for ε).
+
+use super::kernel::Measure;
+use super::minimiser::{Lbfgs, Limits};
+use super::problem::Problem;
+
+/// Least d/A at which a mesh counts as untangled: the shape energy takes over there.
+const UNTANGLED: f64 = 1e-3;
+/// Least share by which ε's bound shrinks in a round.
+const LEAST_DECREASE: f64 = 0.1;
+/// Step bound of the minimiser, in natural lengths.
+const REACH: f64 = 1.0;
+
+/// At most `rounds` rounds of `steps` steps; `true` when no sample is inverted any more. Adds to
+/// `evaluations`.
+pub(super) fn untangle(
+    problem: &mut Problem,
+    lbfgs: &mut Lbfgs,
+    rounds: usize,
+    steps: usize,
+    evaluations: &mut usize,
+) -> bool {
+    let mut least = problem.least_jacobian();
+    let mut epsilon = 1.0f64;
+    for _ in 0..rounds {
+        if least > UNTANGLED {
+            break;
+        }
+        problem.measure = Measure::Regularised { epsilon };
+        let mut x = std::mem::take(&mut problem.unknowns);
+        let metric = std::mem::take(&mut problem.metric);
+        let before = problem.energy(&x);
+        let limits = Limits { steps, progress: 1e-3 };
+        let minimum = lbfgs.minimise(problem, &mut x, &metric, REACH, limits);
+        *evaluations += minimum.evaluations + 2;
+        (problem.unknowns, problem.metric) = (x, metric);
+        least = problem.least_jacobian();
+        if !(before.is_finite() && minimum.value.is_finite()) {
+            break;
+        }
+        // The paper's rule: ε so small that the barrier χ stands just below the present least d.
+        let share = (1.0 - minimum.value / before).max(LEAST_DECREASE);
+        let chi = 0.5 * (least + (least * least + epsilon * epsilon).sqrt());
+        let bound = (1.0 - share) * chi;
+        epsilon = if least < bound { 2.0 * (bound * (bound - least)).sqrt() } else { 1e-9 };
+    }
+    least > 0.0
+}
