@@ -114,7 +114,7 @@ fn absolute_tolerances_scale_with_the_frame() {
     let frame = Frame { scale: 4.0, ..Frame::identity() };
     let value = |norm, tolerance| {
         let options = Options { norm, tolerance, ..Options::default() };
-        let t = BoundaryTolerance::new(&options, &frame);
+        let t = BoundaryTolerance::new(&options, &frame, 6.0);
         assert!(
             (t.in_caller_frame(&frame).value / t.value - if norm == Norm::Max { 4.0 } else { 8.0 }).abs()
                 < 1e-12
@@ -124,7 +124,9 @@ fn absolute_tolerances_scale_with_the_frame() {
     assert!((value(Norm::L2, Tolerance::Absolute(0.08)) - 0.01).abs() < 1e-15);
     assert!((value(Norm::H1, Tolerance::Absolute(0.08)) - 0.01).abs() < 1e-15);
     assert!((value(Norm::Max, Tolerance::Absolute(0.08)) - 0.02).abs() < 1e-15);
-    assert_eq!(value(Norm::L2, Tolerance::Relative(1e-5)), 1e-5);
+    // The caller's diagonal is 6, so 1.5 in this frame.
+    assert!((value(Norm::L2, Tolerance::Relative(1e-5)) - 1e-5 * 1.5f64.powf(1.5)).abs() < 1e-19);
+    assert!((value(Norm::Max, Tolerance::Relative(1e-5)) - 1.5e-5).abs() < 1e-19);
 }
 
 /// Whether the placement covers the chain, and what its largest error is.

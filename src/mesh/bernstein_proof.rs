@@ -249,7 +249,7 @@ impl JacobianProof {
             let index = if c == 0 { place % m } else { place / m };
             r.center[c] + r.half * self.points[index]
         });
-        if !(least > 0.0) {
+        if least <= 0.0 || least.is_nan() {
             return Finding::Negative { value: least, at };
         }
         // Values → Chebyshev coefficients → control values of the kept part.

@@ -22,11 +22,11 @@ pub struct BoundaryTolerance {
 }
 
 impl BoundaryTolerance {
-    /// The options' tolerance in the canonical frame. A relative one means the domain at a
-    /// diagonal of 1, which is the canonical frame itself.
-    pub fn new(options: &Options, frame: &Frame) -> Self {
+    /// The options' tolerance in the canonical frame. `diagonal` is that of the domain's bounding box in
+    /// the caller's frame: a relative tolerance E means E · D^{3/2} (E · D for the maximum).
+    pub fn new(options: &Options, frame: &Frame, diagonal: f64) -> Self {
         let value = match options.tolerance {
-            Tolerance::Relative(e) => e,
+            Tolerance::Relative(e) => e * norm_unit(options.norm, diagonal / frame.scale),
             Tolerance::Absolute(e) => e / norm_unit(options.norm, frame.scale),
         };
         BoundaryTolerance { norm: options.norm, order: options.order, value }
@@ -172,9 +172,9 @@ impl BoundaryError {
     fn node_slopes(&self, nodes: &[Point], length: f64) -> [Vector; MAX_NODES] {
         let mut slopes = [Vector::zeros(); MAX_NODES];
         if self.tolerance.norm == Norm::H1 {
-            for i in 0..nodes.len() {
+            for (i, slope) in slopes.iter_mut().enumerate().take(nodes.len()) {
                 for (j, node) in nodes.iter().enumerate() {
-                    slopes[i] += node.coords * (self.differentiation[(i, j)] * 2.0 / length);
+                    *slope += node.coords * (self.differentiation[(i, j)] * 2.0 / length);
                 }
             }
         }
@@ -248,8 +248,7 @@ impl Accumulated {
             }
             Norm::Max => {
                 let distance = error.norm();
-                // Also true for a NaN, which must not be lost.
-                if !(distance <= self.sum) {
+                if distance > self.sum || distance.is_nan() {
                     (self.sum, self.place) = (distance, s);
                 }
             }

@@ -6,12 +6,21 @@
 
 mod bernstein_proof;
 mod boundary_error;
+mod ceiling;
+mod conformity;
 mod geometry;
+mod high_order_mesh;
+mod measures;
 mod quad_mesh;
 
 pub use bernstein_proof::{JacobianProof, Verdict};
 pub use boundary_error::{BoundaryError, BoundaryTolerance};
+pub use ceiling::{
+    irregular, irregularity_bound, quads_by_table, scaled_jacobian_ceiling, Irregular, IrregularityBound,
+};
 pub use geometry::Geometry;
+pub use high_order_mesh::{ExactCurve, TableCurve};
+pub use measures::{ElementMeasures, Quality};
 pub use quad_mesh::{Edge, QuadMesh, Vertex};
 
 use crate::numerics::Point;

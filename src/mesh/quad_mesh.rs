@@ -48,6 +48,9 @@ impl QuadMesh {
         region: Vec<u32>,
         shapes: &HashMap<[u32; 2], Vec<Vector>>,
     ) -> Result<QuadMesh, (String, Point)> {
+        if quads.iter().flatten().any(|v| *v as usize >= vertices.len()) {
+            return Err(("a quad has a vertex that does not exist".into(), Point::origin()));
+        }
         let mut edges: Vec<Edge> = Vec::with_capacity(2 * quads.len() + 8);
         let mut known: HashMap<[u32; 2], u32> = HashMap::with_capacity(2 * quads.len() + 8);
         let mut quad_edges = Vec::with_capacity(quads.len());

@@ -103,6 +103,13 @@ pub const SHARP_TIP: f64 = std::f64::consts::FRAC_PI_3;
 /// traces and base mesh are polygons, so areas agree only roughly; a region counted twice or missing
 /// differs by more.
 pub const LAYOUT_AREA: f64 = 0.05;
+
+/// Largest distance of a boundary vertex from the point of its place, relative to the domain's
+/// diagonal: both are evaluations of the same table, or of the exact curve beside it.
+pub const PLACE_DISTANCE: f64 = 1e-9;
+
+/// Largest difference of arc lengths that are the same place, relative to the domain's diagonal.
+pub const SPAN_GAP: f64 = 1e-12;
 /// Gap at a joint, relative to the domain's diagonal, that is mere rounding: which of the two ends
 /// moves is then decided in the normalised orientation, so that loops given backwards agree.
 pub const JOIN_ROUNDING: f64 = 1e-12;
