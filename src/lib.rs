@@ -18,6 +18,7 @@ pub mod separatrices;
 pub mod singularities;
 pub mod smooth;
 pub mod stages;
+pub mod statistics;
 
 pub use error::{Error, Result};
 pub use generate::generate;
