@@ -10,7 +10,7 @@ mod watch;
 
 use crate::domain::{Boundary, Domain};
 use crate::error::{Error, Result};
-use crate::mesh::{BoundaryTolerance, HighOrderMesh, TableCurve};
+use crate::mesh::{BoundaryTolerance, HighOrderMesh};
 use crate::options::Options;
 use crate::progress::Stage;
 use crate::stages::Stages;
@@ -47,7 +47,7 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
         Boundary::new(domain)
     })?;
     stages.boundary = Some(boundary.clone());
-    let tolerance = BoundaryTolerance::new(options, &boundary.frame, domain.diagonal());
+    let tolerance = BoundaryTolerance::new(options, &boundary);
 
     let mut failure = None;
     let mut request = blocks::first_request(options, &boundary);

@@ -35,7 +35,7 @@ impl ElementSize {
     pub fn new(mesh: &Triangulation, boundary: &Boundary, most: f64) -> Self {
         let largest = (LARGEST * boundary.area.max(0.0).sqrt()).min(most);
         let n = mesh.vertices.len();
-        let mut edges = vec![(0.0, 0.0); n];
+        let mut edges = vec![(0.0f64, 0.0f64); n];
         let mut neighbors: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];
         for t in &mesh.triangles {
             for i in 0..3 {

@@ -1,7 +1,7 @@
 //! Steps 1 to 6: from the boundary to conforming blocks.
 
 use super::watch::Watch;
-use crate::base_mesh::{self, Request, ElementSize, Triangulation};
+use crate::base_mesh::{self, ElementSize, Request, Triangulation};
 use crate::cross_field::{self, CrossField};
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
@@ -61,7 +61,9 @@ pub(super) fn field(
         stages.cross_field = Some(cross.clone());
         let found = singularities::find(&mesh, boundary, &cross);
         let known = found.as_ref().map_or(&[][..], |(singularities, _)| singularities);
-        if let (Err(places), true) = (singularities::gate(&mesh, &cross, known, least), round < GATE_ROUNDS) {
+        if let (Err(places), true) =
+            (singularities::gate(&mesh, boundary, &cross, known, least), round < GATE_ROUNDS)
+        {
             request.refine.extend(places);
             round += 1;
             continue;

@@ -25,8 +25,7 @@ pub(super) fn refine_and_smooth(
     stages: &mut Stages,
 ) -> Result<QuadMesh> {
     let error = BoundaryError::new(*tolerance);
-    let smoothing = crate::smooth::BoundaryTolerance { norm: tolerance.norm, value: tolerance.value };
-    let optimiser = Optimiser::new(boundary, options.order, Some(smoothing));
+    let optimiser = Optimiser::new(boundary, options.order, Some(*tolerance));
     let mut mesh = start(boundary, layout)?;
     note(stages, &optimiser, &mesh, "layout");
 
