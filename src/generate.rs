@@ -27,10 +27,9 @@ const ATTEMPTS: usize = 5;
 /// # Example
 /// ```
 /// use quadrel::{domain::Domain, generate, stages::Stages, Options};
-/// # use quadrel::numerics::Point;
 /// let mut builder = Domain::builder();
-/// builder.begin_loop(quadrel::domain::LoopKind::Outer, "wall");
-/// builder.add_arc(Point::new(0.0, 0.0), 1.0, 0.0, 2.0 * std::f64::consts::PI, None);
+/// builder.begin_loop(quadrel::domain::LoopKind::Outer, "wall")?;
+/// builder.add_arc([0.0, 0.0], 1.0, 0.0, 2.0 * std::f64::consts::PI, "")?;
 /// builder.end_loop()?;
 /// let disc = builder.build()?;
 /// let mesh = generate(&disc, &Options::default(), &mut Stages::default())?;
@@ -44,7 +43,7 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
 
     // Step 0: boundary, order, tolerance.
     let boundary = watch.run(stages, Stage::Domain, |stages| {
-        stages.warnings.extend(domain.warnings().iter().cloned());
+        stages.warnings.extend(domain.warnings.iter().cloned());
         Boundary::new(domain)
     })?;
     stages.boundary = Some(boundary.clone());
@@ -79,11 +78,13 @@ fn steps_1_to_9(
     let field = blocks::field(boundary, options, request, watch, stages)?;
 
     // Steps 4 to 6: separatrices, quad-dominant regions, repair.
-    let layout = blocks::layout(boundary, tolerance, &field, watch, stages)?;
+    let layout = blocks::layout(boundary, options, tolerance, &field, watch, stages)?;
 
     // Steps 7 to 9: subdivide and smooth until every boundary edge meets the tolerance.
     let mesh = rounds::refine_and_smooth(boundary, options, tolerance, &layout, watch, stages)?;
 
     // The proof: curved elements of order N with positive Jacobians, on the exact curves.
-    watch.run(stages, Stage::Mesh, |_| HighOrderMesh::new(&mesh, boundary, domain, options.order, tolerance))
+    watch.run(stages, Stage::Mesh, |_| {
+        HighOrderMesh::with_curve(&mesh, boundary, &TableCurve(boundary), tolerance)
+    })
 }

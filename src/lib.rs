@@ -5,6 +5,7 @@ pub mod base_mesh;
 pub mod cross_field;
 pub mod domain;
 pub mod error;
+mod generate;
 pub mod input;
 pub mod layout;
 pub mod mesh;
@@ -20,4 +21,5 @@ pub mod stages;
 pub mod statistics;
 
 pub use error::{Error, Result};
+pub use generate::generate;
 pub use options::Options;

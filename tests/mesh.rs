@@ -203,7 +203,7 @@ fn proof_speed() {
 
 fn unit_circle_tolerance(b: &Boundary, order: usize, value: f64) -> BoundaryTolerance {
     let options = Options { order, tolerance: Tolerance::Absolute(value), ..Options::default() };
-    BoundaryTolerance::new(&options, &b.frame, 8f64.sqrt())
+    BoundaryTolerance::new(&options, b)
 }
 
 fn finish(b: &Boundary, mesh: &QuadMesh, tolerance: &BoundaryTolerance) -> quadrel::Result<HighOrderMesh> {

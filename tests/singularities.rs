@@ -41,6 +41,10 @@ fn simple_shapes_have_the_singularities_of_their_topology() {
     assert_eq!(valences(&resolved(&regular(3))), [3]);
     // At 135° the tie goes down to one quad: 4 − 8.
     assert_eq!(valences(&resolved(&regular(8))), [5; 4]);
+    // A tie at 45° goes to one quad, and its point stays clear of the tips.
+    assert_eq!(valences(&resolved(&sector(45.0))), [3]);
+    let right = boundary(&[shapes::polygon(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])]);
+    assert_eq!(valences(&resolved(&right)), [3]);
     // The tip has none, so 4 − 2 − 1 − 1.
     assert_eq!(valences(&resolved(&sector(20.0))), [0; 0]);
 }
@@ -54,12 +58,17 @@ fn diffusion_keeps_the_disc_s_singularities_apart() {
             r.singularities.iter().filter(|s| s.valence == 3).count(),
             4 + r.singularities.len() / 2 - 2
         );
-        let mean: f64 = r.singularities.iter().map(|s| s.point.coords.norm()).sum();
+        let middle = 0.25
+            * (0..4)
+                .map(|i| f64::from(i) * 0.25 * b.chains[0].length)
+                .fold(quadrel::numerics::Vector::zeros(), |sum, s| sum + b.chains[0].point(s).coords);
+        let mean: f64 = r.singularities.iter().map(|s| (s.point.coords - middle).norm()).sum();
+        // The disc's radius is 1/√8 of its bounding box's diagonal.
         mean / r.singularities.len() as f64 * 8f64.sqrt()
     };
     let (diffused, harmonic) = (distance(FieldMethod::Diffused), distance(FieldMethod::Harmonic));
-    assert!((0.6..0.9).contains(&diffused), "{diffused}");
-    assert!(harmonic < 0.3, "{harmonic}");
+    assert!((0.25..0.9).contains(&diffused), "{diffused}");
+    assert!(harmonic < 0.7 * diffused, "{harmonic} {diffused}");
 }
 
 #[test]
@@ -91,7 +100,7 @@ fn ports_follow_the_cross() {
                 let angle = field.start_of_edge(e as usize) + x * field.edge_turn[e as usize];
                 let off = (d.y.atan2(d.x) - angle).rem_euclid(std::f64::consts::FRAC_PI_2);
                 let off = off.min(std::f64::consts::FRAC_PI_2 - off);
-                assert!(off < 0.02, "off by {off}");
+                assert!(off < 1e-6, "off by {off}");
             }
         }
     }
@@ -122,9 +131,9 @@ fn a_coarse_base_mesh_is_noticed_and_refined() {
     let field = solve(&mesh, &b, FieldMethod::Diffused).unwrap();
     let least = 0.05 * usual_size(&b);
     let known = find(&mesh, &b, &field).map_or(vec![], |f| f.0);
-    let asked = gate(&mesh, &field, &known, least).unwrap_err();
+    let asked = gate(&mesh, &b, &field, &known, least).unwrap_err();
     assert!(!asked.is_empty() && asked.iter().all(|&(_, h)| h < 0.3));
     let r = resolve(&b, coarse, FieldMethod::Diffused).unwrap();
-    assert!(gate(&r.mesh, &r.field, &r.singularities, least).is_ok());
+    assert!(gate(&r.mesh, &b, &r.field, &r.singularities, least).is_ok());
     assert!(r.mesh.triangles.len() > mesh.triangles.len());
 }

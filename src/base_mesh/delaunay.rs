@@ -2,7 +2,8 @@
 
 use super::adjacency::{assemble, RawMesh};
 use super::sampling::Sampling;
-use super::{Request, Triangulation};
+use super::size_field::SizeField;
+use super::Triangulation;
 use crate::domain::{Boundary, Place};
 use crate::error::{Error, Result};
 use crate::numerics::tolerances::{BASE_ANGLE, CHORD_SAGITTA};
@@ -76,8 +77,8 @@ enum Attempt {
 }
 
 /// See [`super::triangulate`].
-pub(super) fn triangulate(boundary: &Boundary, request: &Request, size: f64) -> Result<Triangulation> {
-    let mut sampling = Sampling::new(boundary, request, size);
+pub(super) fn triangulate(boundary: &Boundary, sizes: &SizeField) -> Result<Triangulation> {
+    let mut sampling = Sampling::new(boundary, sizes);
     for round in 0..ROUNDS {
         let polygon = Polygon::new(&sampling, round < SNAPPED_ROUNDS);
         match constrain(&polygon)? {
@@ -100,7 +101,7 @@ pub(super) fn triangulate(boundary: &Boundary, request: &Request, size: f64) -> 
                         let reason = "the boundary's loops are not nested".into();
                         return Err(Error::BaseMesh { reason, at: None });
                     }
-                    None => return refine(*cdt, polygon, handles, &sampling, request, size),
+                    None => return refine(*cdt, polygon, handles, &sampling, sizes),
                 }
             }
         }
@@ -248,9 +249,9 @@ fn refine(
     polygon: Polygon,
     handles: Vec<FixedVertexHandle>,
     sampling: &Sampling,
-    request: &Request,
-    size: f64,
+    sizes: &SizeField,
 ) -> Result<Triangulation> {
+    let size = sizes.usual();
     let area: f64 = (0..polygon.len())
         .map(|i| {
             let (a, b) = (polygon.points[i], polygon.points[polygon.next[i] as usize]);
@@ -267,7 +268,7 @@ fn refine(
     let mut result = cdt.refine(parameters.clone());
     let mut changed = split_bridges(&mut cdt, &result.excluded_faces, &polygon, sampling)?;
     for _ in 0..SIZE_PASSES {
-        if request.refine.is_empty() || !split_long(&mut cdt, request, size)? {
+        if sizes.is_uniform() || !split_long(&mut cdt, sizes)? {
             break;
         }
         changed = true;
@@ -342,7 +343,7 @@ fn split_bridges(
 }
 
 /// Splits interior edges that are longer than a place asks for; whether there was any.
-fn split_long(cdt: &mut Cdt, request: &Request, size: f64) -> Result<bool> {
+fn split_long(cdt: &mut Cdt, sizes: &SizeField) -> Result<bool> {
     let outside = outside(cdt);
     let mut middles = Vec::new();
     for edge in cdt.undirected_edges().filter(|e| !e.is_constraint_edge()) {
@@ -352,7 +353,7 @@ fn split_long(cdt: &mut Cdt, request: &Request, size: f64) -> Result<bool> {
         let [a, b] = edge.positions();
         let middle = Point::new(0.5 * (a.x + b.x), 0.5 * (a.y + b.y));
         // Bisection leaves edges of 0.7 to 1.4 times the wanted length.
-        if (a.x - b.x).hypot(a.y - b.y) > 1.4 * request.size_at(middle, size) {
+        if (a.x - b.x).hypot(a.y - b.y) > 1.4 * sizes.at(middle) {
             middles.push(Point2::new(middle.x, middle.y));
         }
     }

@@ -13,11 +13,12 @@
 mod adjacency;
 mod check;
 mod delaunay;
+mod element_size;
 mod locate;
 mod sampling;
 mod size_field;
 
-pub use size_field::SizeField;
+pub use element_size::ElementSize;
 
 use crate::domain::{Boundary, Place};
 use crate::error::{Error, Result};
@@ -54,16 +55,6 @@ pub struct Request {
     pub refine: Vec<(Point, f64)>,
 }
 
-impl Request {
-    /// The wanted edge length at `p`: the smallest that a place asks for, growing with the
-    /// distance from it.
-    pub fn size_at(&self, p: Point, usual: f64) -> f64 {
-        // The growth that triangles of 26° allow; the full size is kept within two edges of the place.
-        let grown = |&(q, h): &(Point, f64)| h + 0.35 * ((p - q).norm() - 2.0 * h).max(0.0);
-        self.refine.iter().map(grown).fold(usual, f64::min)
-    }
-}
-
 /// The length of the base edges if the caller has no wish.
 pub fn usual_size(boundary: &Boundary) -> f64 {
     BASE_EDGE_DIAGONAL.min(boundary.area.max(0.0).sqrt() * BASE_EDGE_AREA)
@@ -81,5 +72,5 @@ pub fn triangulate(boundary: &Boundary, request: &Request) -> Result<Triangulati
             allowed: "a finite length above 0",
         });
     }
-    delaunay::triangulate(boundary, request, size)
+    delaunay::triangulate(boundary, &size_field::SizeField::new(request, size))
 }

@@ -1,6 +1,6 @@
 //! Chords of the boundary: how finely each chain is cut.
 
-use super::Request;
+use super::size_field::SizeField;
 use crate::domain::{Boundary, BoundaryPoint, Chain, Place};
 use crate::numerics::tolerances::{
     CHORD_RATIO, CHORD_TURN, CORNER_CHORD_TURN, SHARP_TIP, SNAP_GRID, SNAP_LEAST_CHORD,
@@ -55,19 +55,19 @@ fn accumulate_turning(chain: &Chain) -> Vec<f64> {
 
 impl<'a> Sampling<'a> {
     /// Cuts the boundary: chords no longer than wanted, turning little, graded.
-    pub fn new(boundary: &'a Boundary, request: &Request, size: f64) -> Self {
+    pub fn new(boundary: &'a Boundary, sizes: &SizeField) -> Self {
         let turning: Vec<_> = boundary.chains.iter().map(accumulate_turning).collect();
         let mut sampling = Sampling { boundary, turning, loops: Vec::with_capacity(boundary.loops.len()) };
         for chains in &boundary.loops {
             let mut chords = Vec::new();
             for &c in chains {
-                sampling.partition(c, size, chains.len(), &mut chords);
+                sampling.partition(c, sizes.usual(), chains.len(), &mut chords);
             }
             sampling.loops.push(chords);
         }
         sampling.halve_while(|s, chord| {
             let middle = s.chain(chord).point(0.5 * (chord.start + chord.end));
-            chord.turn > s.most_turn(chord) || chord.length() > request.size_at(middle, size)
+            chord.turn > s.most_turn(chord) || chord.length() > sizes.at(middle)
         });
         sampling.balance();
         sampling
@@ -157,13 +157,10 @@ impl<'a> Sampling<'a> {
     /// Halves the marked chords; whether there was any.
     pub fn halve(&mut self, marks: &[Vec<bool>]) -> bool {
         let mut any = false;
-        for l in 0..self.loops.len() {
-            if !marks[l].contains(&true) {
-                continue;
-            }
+        for (l, marks) in marks.iter().enumerate().filter(|(_, marks)| marks.contains(&true)) {
             let old = std::mem::take(&mut self.loops[l]);
             let mut new = Vec::with_capacity(old.len() + old.len() / 2);
-            for (chord, &marked) in old.iter().zip(&marks[l]) {
+            for (chord, &marked) in old.iter().zip(marks) {
                 let middle = 0.5 * (chord.start + chord.end);
                 // A chord without a number between its ends cannot be halved.
                 if marked && middle > chord.start && middle < chord.end {

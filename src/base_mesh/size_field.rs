@@ -1,88 +1,83 @@
-//! A size field read off the base mesh: it already knows curvature, gaps and grading.
+//! The wanted length of base edges at a point.
 
-use super::Triangulation;
+use super::Request;
 use crate::numerics::Point;
 
-/// Local size anywhere in the plane: that of the nearest base vertex (a k-d tree).
-#[derive(Debug, Clone)]
-pub struct SizeField {
-    /// (point, size), arranged as an implicit balanced tree.
-    nodes: Vec<(Point, f64)>,
+/// Growth of the wanted length with the distance from a place: what triangles of 26° can follow.
+const GROWTH: f64 = 0.35;
+/// The full wish holds within so many edges of the place.
+const CORE: f64 = 2.0;
+
+/// A usual length, and places that want less around them; found by a grid.
+pub(super) struct SizeField<'a> {
+    usual: f64,
+    places: &'a [(Point, f64)],
+    /// Wider than any place's influence.
+    cell: f64,
+    /// (cell, place), sorted.
+    cells: Vec<([i64; 2], u32)>,
 }
 
-impl SizeField {
-    /// The mean length of the edges at each base vertex, as its size.
-    pub fn new(mesh: &Triangulation) -> Self {
-        let mut sum = vec![(0.0, 0.0); mesh.vertices.len()];
-        for t in &mesh.triangles {
-            for i in 0..3 {
-                let (a, b) = (t[i] as usize, t[(i + 1) % 3] as usize);
-                let length = (mesh.vertices[a].point - mesh.vertices[b].point).norm();
-                for v in [a, b] {
-                    sum[v].0 += length;
-                    sum[v].1 += 1.0;
-                }
+impl<'a> SizeField<'a> {
+    pub fn new(request: &'a Request, usual: f64) -> Self {
+        // At this distance the smallest wish has grown to the usual length.
+        let cell = CORE * usual + usual / GROWTH;
+        let mut field = SizeField { usual, places: &request.refine, cell, cells: Vec::new() };
+        field.cells = (0u32..).zip(&request.refine).map(|(i, (p, _))| (field.cell_of(*p), i)).collect();
+        field.cells.sort_unstable();
+        field
+    }
+
+    fn cell_of(&self, p: Point) -> [i64; 2] {
+        [p.x, p.y].map(|x| (x / self.cell).floor() as i64)
+    }
+
+    /// Whether any place wants less than the usual length.
+    pub fn is_uniform(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// The usual length.
+    pub fn usual(&self) -> f64 {
+        self.usual
+    }
+
+    /// The wanted length at `p`: the least that a place asks for there.
+    pub fn at(&self, p: Point) -> f64 {
+        let mut least = self.usual;
+        if self.is_uniform() {
+            return least;
+        }
+        let [x, y] = self.cell_of(p);
+        for column in x - 1..=x + 1 {
+            let from = self.cells.partition_point(|&(c, _)| c < [column, y - 1]);
+            for &(_, i) in self.cells[from..].iter().take_while(|&&(c, _)| c <= [column, y + 1]) {
+                let (q, h) = self.places[i as usize];
+                least = least.min(h + GROWTH * ((p - q).norm() - CORE * h).max(0.0));
             }
         }
-        let mut nodes: Vec<(Point, f64)> = mesh
-            .vertices
-            .iter()
-            .zip(&sum)
-            .filter(|(_, s)| s.1 > 0.0)
-            .map(|(v, s)| (v.point, s.0 / s.1))
-            .collect();
-        arrange(&mut nodes, 0);
-        SizeField { nodes }
-    }
-
-    /// The size at `p`.
-    pub fn at(&self, p: Point) -> f64 {
-        let mut best = (f64::INFINITY, 1.0);
-        nearest(&self.nodes, p, 0, &mut best);
-        best.1
+        least
     }
 }
 
-fn coordinate(p: Point, axis: usize) -> f64 {
-    if axis == 0 {
-        p.x
-    } else {
-        p.y
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Puts the median of alternating coordinates in the middle of every part.
-fn arrange(nodes: &mut [(Point, f64)], axis: usize) {
-    if nodes.len() < 2 {
-        return;
-    }
-    let middle = nodes.len() / 2;
-    nodes.select_nth_unstable_by(middle, |a, b| {
-        coordinate(a.0, axis)
-            .total_cmp(&coordinate(b.0, axis))
-            .then(coordinate(a.0, 1 - axis).total_cmp(&coordinate(b.0, 1 - axis)))
-    });
-    let (low, high) = nodes.split_at_mut(middle);
-    arrange(low, 1 - axis);
-    arrange(&mut high[1..], 1 - axis);
-}
-
-/// Depth is the logarithm of the number of nodes.
-fn nearest(nodes: &[(Point, f64)], p: Point, axis: usize, best: &mut (f64, f64)) {
-    if nodes.is_empty() {
-        return;
-    }
-    let middle = nodes.len() / 2;
-    let (q, size) = nodes[middle];
-    let d = (p - q).norm_squared();
-    if d < best.0 {
-        *best = (d, size);
-    }
-    let offset = coordinate(p, axis) - coordinate(q, axis);
-    let (low, high) = (&nodes[..middle], &nodes[middle + 1..]);
-    let (near, far) = if offset < 0.0 { (low, high) } else { (high, low) };
-    nearest(near, p, 1 - axis, best);
-    if offset * offset < best.0 {
-        nearest(far, p, 1 - axis, best);
+    #[test]
+    fn grid_finds_what_a_full_search_finds() {
+        let place = |i: u32| {
+            let (x, y) = (f64::from(i * 7919 % 101) / 101.0, f64::from(i * 104_729 % 97) / 97.0);
+            (Point::new(x - 0.5, y - 0.5), 0.001 + 0.0005 * f64::from(i % 40))
+        };
+        let request = Request { size: None, refine: (0..300).map(place).collect() };
+        let field = SizeField::new(&request, 0.03);
+        for i in 0..1000 {
+            let p = Point::new(f64::from(i % 37) / 37.0 - 0.5, f64::from(i % 41) / 41.0 - 0.5);
+            let full = request.refine.iter().fold(0.03, |least: f64, (q, h)| {
+                least.min(h + GROWTH * ((p - q).norm() - CORE * h).max(0.0))
+            });
+            assert_eq!(field.at(p), full);
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! The finite element solve for u = (cos 4θ, sin 4θ).
 
 use super::border::Border;
+use super::tips::Held;
 use crate::base_mesh::Triangulation;
 use crate::error::{Error, Result};
 use crate::numerics::sparse::{Cholesky, Entry};
@@ -106,14 +107,21 @@ fn renormalise(u: &mut [[f64; 2]], inner: &[u32]) {
     }
 }
 
-/// Solves for u at the vertices.
-pub(super) fn solve(mesh: &Triangulation, border: &Border, method: FieldMethod) -> Result<Vec<[f64; 2]>> {
+/// Solves for u at the vertices; `held` fixes it at some inner ones.
+pub(super) fn solve(
+    mesh: &Triangulation,
+    border: &Border,
+    held: &[Option<Held>],
+    method: FieldMethod,
+) -> Result<Vec<[f64; 2]>> {
     let mut u = vec![[0.0; 2]; mesh.vertices.len()];
     let mut unknown = vec![NONE; mesh.vertices.len()];
     let mut inner = Vec::new();
     for v in 0..mesh.vertices.len() as u32 {
         if border.holds(v) {
             u[v as usize] = border.middle(v);
+        } else if let Some(held) = held[v as usize] {
+            u[v as usize] = [(4.0 * held.cross).cos(), (4.0 * held.cross).sin()];
         } else {
             unknown[v as usize] = inner.len() as u32;
             inner.push(v);

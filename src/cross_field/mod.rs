@@ -16,9 +16,11 @@
 mod border;
 mod check;
 mod diffusion;
+mod tips;
 mod turning;
 
 pub use border::quads_at_corner;
+pub use tips::doubtful_corners;
 
 use crate::base_mesh::Triangulation;
 use crate::domain::Boundary;
@@ -67,7 +69,8 @@ pub struct CrossField {
 /// the turns around a triangle do not add up to quarter turns (a degenerate mesh).
 pub fn solve(mesh: &Triangulation, boundary: &Boundary, method: FieldMethod) -> Result<CrossField> {
     let border = border::Border::new(mesh, boundary)?;
-    let u = diffusion::solve(mesh, &border, method)?;
-    let triangles = turning::triangle_crosses(mesh, &border, &u)?;
+    let held = tips::held(mesh, boundary, &border);
+    let u = diffusion::solve(mesh, &border, &held, method)?;
+    let triangles = turning::triangle_crosses(mesh, &border, &held, &u)?;
     Ok(CrossField { u, triangles, quads_at: border.quads, border_angle: border.angle })
 }

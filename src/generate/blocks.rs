@@ -1,12 +1,13 @@
 //! Steps 1 to 6: from the boundary to conforming blocks.
 
 use super::watch::Watch;
-use crate::base_mesh::{self, Request, SizeField, Triangulation};
+use crate::base_mesh::{self, ElementSize, Request, Triangulation};
 use crate::cross_field::{self, CrossField};
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
 use crate::layout::{self, t_mesh, QuadLayout, Targets};
 use crate::mesh::{BoundaryError, BoundaryTolerance};
+use crate::numerics::tolerances::LEAST_REFINEMENT;
 use crate::options::Options;
 use crate::progress::Stage;
 use crate::refine::least_pieces;
@@ -18,9 +19,6 @@ use crate::stages::Stages;
 const GATE_ROUNDS: usize = 6;
 /// Rounds of seed rays for regions with two tips.
 const SEED_ROUNDS: usize = 6;
-/// Size of an element in base edges, before coarsening: base edges turn about 0.2 rad, elements may turn
-/// four or five times that.
-const ELEMENT_SIZE: f64 = 4.0;
 /// Edges a chain gets for each one that the tolerance needs: room for vertices that slide.
 const CHAIN_MARGIN: f64 = 1.2;
 /// Base size of the next attempt relative to the last.
@@ -40,7 +38,7 @@ pub(super) fn first_request(options: &Options, boundary: &Boundary) -> Request {
 
 /// Asks for a finer base mesh everywhere.
 pub(super) fn refine(request: &mut Request, boundary: &Boundary) {
-    let size = request.size.unwrap_or_else(|| base_mesh::automatic_size(boundary));
+    let size = request.size.unwrap_or_else(|| base_mesh::usual_size(boundary));
     request.size = Some(size * FINER);
 }
 
@@ -52,29 +50,35 @@ pub(super) fn field(
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<Field> {
-    for round in 0.. {
+    let usual = base_mesh::usual_size(boundary);
+    let least = LEAST_REFINEMENT * request.size.map_or(usual, |h| h.min(usual));
+    let mut round = 0;
+    loop {
         let mesh = watch.run(stages, Stage::BaseMesh, |_| base_mesh::triangulate(boundary, request))?;
         stages.triangulation = Some(mesh.clone());
         let cross =
             watch.run(stages, Stage::CrossField, |_| cross_field::solve(&mesh, boundary, options.field))?;
         stages.cross_field = Some(cross.clone());
-        let gate = singularities::gate(&mesh, &cross, boundary);
-        if let (Err(places), true) = (&gate, round < GATE_ROUNDS) {
-            request.refine.extend(places.iter().copied());
+        let found = singularities::find(&mesh, boundary, &cross);
+        let known = found.as_ref().map_or(&[][..], |(singularities, _)| singularities);
+        if let (Err(places), true) =
+            (singularities::gate(&mesh, boundary, &cross, known, least), round < GATE_ROUNDS)
+        {
+            request.refine.extend(places);
+            round += 1;
             continue;
         }
-        let (singularities, corners) =
-            watch.run(stages, Stage::Singularities, |_| singularities::find(&mesh, &cross, boundary))?;
+        let (singularities, corners) = watch.run(stages, Stage::Singularities, |_| found)?;
         stages.singularities = singularities.clone();
         stages.corners = corners.clone();
         return Ok(Field { mesh, cross, singularities, corners });
     }
-    unreachable!("the loop above returns")
 }
 
 /// Separatrices, the T-mesh of regions, and its repair to conforming blocks.
 pub(super) fn layout(
     boundary: &Boundary,
+    options: &Options,
     tolerance: &BoundaryTolerance,
     field: &Field,
     watch: &mut Watch,
@@ -106,8 +110,9 @@ pub(super) fn layout(
             let least = least_pieces(chain, &error)?;
             minimum.push(if least > 1 { (least as f64 * CHAIN_MARGIN).ceil() as u32 } else { 1 });
         }
-        let sizes = SizeField::new(mesh);
-        let size = |p| ELEMENT_SIZE * sizes.at(p);
+        let most = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
+        let sizes = ElementSize::new(mesh, boundary, most);
+        let size = |p| sizes.at(p);
         layout::conform(&regions, boundary, &Targets::new(&size, &minimum))
     })?;
     stages.block_layout = Some(conforming.repaired);

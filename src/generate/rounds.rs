@@ -1,11 +1,11 @@
 //! Steps 7 to 9: subdivide, smooth, coarsen; repeat until every boundary edge meets the tolerance.
 
 use super::watch::Watch;
-use crate::domain::{Boundary, Place};
+use crate::domain::Boundary;
 use crate::error::{Error, Result};
 use crate::layout::QuadLayout;
 use crate::mesh::{BoundaryError, BoundaryTolerance, QuadMesh, Vertex};
-use crate::options::{Options, Subdivision};
+use crate::options::Options;
 use crate::progress::Stage;
 use crate::refine;
 use crate::smooth::{Effort, Optimiser};
@@ -31,9 +31,8 @@ pub(super) fn refine_and_smooth(
 
     for _ in 0..ROUNDS {
         // Step 7: boundary vertices where the tolerance wants them; edges divided where that is not enough.
-        mesh = watch.run(stages, Stage::Refine, |_| {
-            refine::meet_tolerance(mesh, boundary, &error, options.subdivision)
-        })?;
+        mesh =
+            watch.run(stages, Stage::Refine, |_| refine::meet_tolerance(mesh, boundary, &error, options))?;
         note(stages, &optimiser, &mesh, "subdivide");
         // Step 8: smooth, and untangle if need be.
         let outcome =
@@ -44,7 +43,11 @@ pub(super) fn refine_and_smooth(
             break;
         }
         if !outcome.valid {
-            mesh = watch.run(stages, Stage::Refine, |_| refine::split_inverted(mesh, &optimiser))?;
+            let quality = optimiser.quality(&mesh);
+            let inverted = |q: &usize| quality.elements[*q].jacobian_ratio <= 0.0;
+            let edges: Vec<u32> =
+                (0..mesh.quads.len()).filter(inverted).flat_map(|q| mesh.quad_edges[q]).collect();
+            mesh = watch.run(stages, Stage::Refine, |_| refine::divide_chords(&mesh, boundary, &edges))?;
             note(stages, &optimiser, &mesh, "split inverted");
         }
     }
@@ -57,12 +60,6 @@ pub(super) fn refine_and_smooth(
             .unwrap_or(0);
         let at = mesh.vertices[mesh.quads[worst][0] as usize].point;
         return Err(Error::InvalidElement { jacobian: quality.min_scaled_jacobian, at });
-    }
-    if options.subdivision == Subdivision::EqualError {
-        mesh = watch.run(stages, Stage::Refine, |_| refine::coarsen(mesh, boundary, &optimiser, options))?;
-        note(stages, &optimiser, &mesh, "coarsen");
-        watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut mesh, None, Effort::Full)))?;
-        note(stages, &optimiser, &mesh, "smooth");
     }
     Ok(mesh)
 }

@@ -22,12 +22,12 @@ pub struct BoundaryTolerance {
 }
 
 impl BoundaryTolerance {
-    /// The options' tolerance in the canonical frame. `diagonal` is that of the domain's bounding box in
-    /// the caller's frame: a relative tolerance E means E · D^{3/2} (E · D for the maximum).
-    pub fn new(options: &Options, frame: &Frame, diagonal: f64) -> Self {
+    /// The options' tolerance in the canonical frame. A relative one, E, means E · D^{3/2} (E · D for the
+    /// maximum), D the diagonal of the domain's bounding box.
+    pub fn new(options: &Options, boundary: &Boundary) -> Self {
         let value = match options.tolerance {
-            Tolerance::Relative(e) => e * norm_unit(options.norm, diagonal / frame.scale),
-            Tolerance::Absolute(e) => e / norm_unit(options.norm, frame.scale),
+            Tolerance::Relative(e) => e * norm_unit(options.norm, boundary.diagonal),
+            Tolerance::Absolute(e) => e / norm_unit(options.norm, boundary.frame.scale),
         };
         BoundaryTolerance { norm: options.norm, order: options.order, value }
     }
@@ -100,12 +100,13 @@ impl BoundaryError {
     pub fn of_chain(&self, chain: &Chain, start: f64, end: f64) -> f64 {
         let mut nodes = [Point::origin(); MAX_NODES];
         let nodes = &mut nodes[..self.lobatto.nodes.len()];
+        let mut hint = 0;
         for (node, xi) in nodes.iter_mut().zip(&self.lobatto.nodes) {
-            *node = chain.point(start + 0.5 * (1.0 + xi) * (end - start));
+            *node = chain.evaluate_from(start + 0.5 * (1.0 + xi) * (end - start), &mut hint).0;
         }
         let mut breaks = Vec::new();
         breaks_within(chain, start, end, &mut breaks);
-        let curve = |s: f64| Ok::<_, std::convert::Infallible>(chain.evaluate(start + s));
+        let curve = |s: f64| Ok::<_, std::convert::Infallible>(chain.evaluate_from(start + s, &mut hint));
         match self.measure(nodes, end - start, &breaks, curve) {
             Ok(e) => e,
             Err(never) => match never {},

@@ -2,29 +2,13 @@
 //! verified.
 
 use super::{
-    BoundaryError, BoundaryTolerance, Geometry, HighOrderMesh, JacobianProof, MeshEdge, QuadMesh, Quality,
-    Verdict,
+    BoundaryError, BoundaryTolerance, DomainCurve, ExactCurve, Geometry, HighOrderMesh, JacobianProof,
+    MeshEdge, QuadMesh, Quality, Verdict,
 };
-use crate::domain::{Boundary, BoundaryPoint, Chain, Frame, Place};
+use crate::domain::{Boundary, BoundaryPoint, Chain, Domain, Frame, Place};
 use crate::error::{Error, Result};
 use crate::mesh::boundary_error::breaks_within;
 use crate::numerics::{Point, Vector, NONE};
-
-/// The exact boundary, in the caller's frame.
-pub trait ExactCurve {
-    /// The exact point at arc length `at.s` of chain `at.chain`.
-    fn point(&self, at: BoundaryPoint) -> Result<Point>;
-}
-
-/// The boundary's tables taken as the exact curves: for meshes without a domain.
-#[derive(Debug, Clone, Copy)]
-pub struct TableCurve<'a>(pub &'a Boundary);
-
-impl ExactCurve for TableCurve<'_> {
-    fn point(&self, at: BoundaryPoint) -> Result<Point> {
-        Ok(self.0.frame.to_caller(self.0.chains[at.chain as usize].point(at.s)))
-    }
-}
 
 /// A canonical displacement in the caller's frame.
 fn vector_to_caller(frame: &Frame, v: Vector) -> Vector {
@@ -33,6 +17,19 @@ fn vector_to_caller(frame: &Frame, v: Vector) -> Vector {
 }
 
 impl HighOrderMesh {
+    /// The finished mesh of `domain` from `mesh`, proven: see [`HighOrderMesh::with_curve`].
+    ///
+    /// # Errors
+    /// As [`HighOrderMesh::with_curve`]; [`Error::Callback`] from a caller's curve.
+    pub fn new(
+        mesh: &QuadMesh,
+        boundary: &Boundary,
+        domain: &Domain,
+        tolerance: &BoundaryTolerance,
+    ) -> Result<HighOrderMesh> {
+        Self::with_curve(mesh, boundary, &DomainCurve { boundary, domain }, tolerance)
+    }
+
     /// Makes the order-N mesh of `mesh` in the caller's frame, with boundary nodes on `curve`, and
     /// proves it: conforming, every Jacobian positive, every boundary edge within `tolerance`
     /// (canonical; its order is the mesh's).
@@ -238,10 +235,11 @@ fn measured_edges(
             let chain = &boundary.chains[span.chain as usize];
             let start = chain.segment_parameter(span.start);
             let end = end_parameter(chain, span.end);
+            let ends = [start, end].map(|(segment, t)| curve.place(chain.loop_index, segment, t));
             result.boundary = chain.name;
-            result.loop_index = chain.loop_index;
-            result.segments = [start.0, end.0];
-            result.parameters = [start.1, end.1];
+            result.loop_index = ends[0].loop_index;
+            result.segments = ends.map(|e| e.segment);
+            result.parameters = ends.map(|e| e.t);
             result.error = exact_error(boundary, curve, error, span, nodes)?;
             if result.error > error.tolerance.value || result.error.is_nan() {
                 let at = nodes[len / 2];

@@ -8,6 +8,7 @@ mod bernstein_proof;
 mod boundary_error;
 mod ceiling;
 mod conformity;
+mod exact_curve;
 mod geometry;
 mod high_order_mesh;
 mod measures;
@@ -18,8 +19,8 @@ pub use boundary_error::{BoundaryError, BoundaryTolerance};
 pub use ceiling::{
     irregular, irregularity_bound, quads_by_table, scaled_jacobian_ceiling, Irregular, IrregularityBound,
 };
+pub use exact_curve::{CurvePlace, DomainCurve, ExactCurve, TableCurve};
 pub use geometry::Geometry;
-pub use high_order_mesh::{ExactCurve, TableCurve};
 pub use measures::{ElementMeasures, Quality};
 pub use quad_mesh::{Edge, QuadMesh, Vertex};
 
@@ -35,7 +36,8 @@ pub struct MeshEdge {
     pub boundary: u32,
     /// Boundary edges: the loop they lie on; `NONE` inside.
     pub loop_index: u32,
-    /// Boundary edges: the loop's segment and its parameter at each end.
+    /// Boundary edges: the loop's segment and its parameter at each end, as the caller has them (the
+    /// parameter falls where the caller walked the loop the other way).
     pub segments: [u32; 2],
     pub parameters: [f64; 2],
     /// Boundary edges: the error in the chosen norm, in the caller's unit; else 0.

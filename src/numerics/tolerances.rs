@@ -90,7 +90,7 @@ pub const LIKE_SIGN_EDGES: f64 = 2.0;
 
 /// Most that the cross may turn along a base edge at the border, in radians, where no singularity
 /// is: beyond, the edge's turn is close to the tie at 45°.
-pub const BORDER_EDGE_TURN: f64 = 0.5;
+pub const BORDER_EDGE_TURN: f64 = 0.6;
 
 /// Base edge, relative to the usual one, below which no check asks for refinement: singularities
 /// of a multiple zero come closer with every refinement.
@@ -110,6 +110,17 @@ pub const PLACE_DISTANCE: f64 = 1e-9;
 
 /// Largest difference of arc lengths that are the same place, relative to the domain's diagonal.
 pub const SPAN_GAP: f64 = 1e-12;
+
+/// Turn of the cross by unit of polar angle at a corner above which the sense of the turn is in doubt: it is
+/// 1 at 45°, where both senses cost the same, and falls to this at 58°.
+pub const TIP_RATE: f64 = 0.55;
+
+/// How far from such a corner the field is held on the corner's own solution, relative to the shorter side.
+/// The singular point of a corner just above 45° settles there, so it sets the tip's element size.
+pub const TIP_SHARE: f64 = 0.2;
+
+/// Most that a side may turn within that distance, in radians.
+pub const TIP_TURN: f64 = 0.1;
 /// Gap at a joint, relative to the domain's diagonal, that is mere rounding: which of the two ends
 /// moves is then decided in the normalised orientation, so that loops given backwards agree.
 pub const JOIN_ROUNDING: f64 = 1e-12;
@@ -139,3 +150,10 @@ pub const TABLE_ERROR: f64 = 1e-11;
 /// Table intervals shorter than this, relative to the canonical diagonal, are not divided further: a
 /// singular parametrisation ends somewhere.
 pub const TABLE_SHORTEST: f64 = 1e-9;
+
+/// Distance from the tip of a cusp, relative to the smaller of its two segments, within which its branches may
+/// come closer than the touching distance: with any visible difference of curvature they are further apart beyond.
+pub const CUSP_REACH: f64 = 1e-2;
+/// Distance along the tangent, relative to the domain's diagonal, at which a point of the exact curve
+/// is at the wanted arc length: a few roundings of a coordinate.
+pub const EXACT_FOOT: f64 = 1e-15;

@@ -2,7 +2,8 @@
 
 use super::Singularity;
 use crate::base_mesh::Triangulation;
-use crate::cross_field::CrossField;
+use crate::cross_field::{doubtful_corners, CrossField};
+use crate::domain::Boundary;
 use crate::numerics::tolerances::{BORDER_EDGE_TURN, LIKE_SIGN_EDGES};
 use crate::numerics::{Point, NONE};
 
@@ -14,6 +15,7 @@ use crate::numerics::{Point, NONE};
 /// already count as resolved, except for windings beyond ±1.
 pub fn gate(
     mesh: &Triangulation,
+    boundary: &Boundary,
     field: &CrossField,
     singularities: &[Singularity],
     least: f64,
@@ -34,6 +36,8 @@ pub fn gate(
         }
     };
 
+    // At doubtful corners the turn is known, however large.
+    let known = doubtful_corners(boundary);
     let mut border = vec![false; mesh.vertices.len()];
     mesh.loops.iter().flatten().for_each(|&v| border[v as usize] = true);
     for (t, own) in field.triangles.iter().enumerate() {
@@ -45,13 +49,13 @@ pub fn gate(
         if own.winding != 0 || near {
             continue;
         }
-        for i in 0..3 {
+        let doubtful = |i: usize| {
             let ends = [mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3]];
-            let touches = ends.iter().any(|&v| border[v as usize]);
-            if touches && mesh.neighbors[t][i] > t as u32 && own.edge_turn[i].abs() > BORDER_EDGE_TURN {
-                refine(center(t), 0.5 * longest(t), false);
-                break;
-            }
+            own.edge_turn[i].abs() > BORDER_EDGE_TURN && ends.iter().any(|&v| border[v as usize])
+        };
+        let at = center(t);
+        if (0..3).any(doubtful) && !known.iter().any(|&(q, reach)| (at - q).norm() < reach) {
+            refine(at, 0.5 * longest(t), false);
         }
     }
 

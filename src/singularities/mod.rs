@@ -66,8 +66,8 @@ pub fn find(
             return Err(Error::CrossField { reason, at: Some(corners[0]) });
         }
         let valence = (4 - own.winding) as u8;
-        let point = zero(corners, mesh.triangles[t].map(|v| field.u[v as usize]));
-        let ports = ports::ports(corners, own, point, valence);
+        let zero = zero(corners, mesh.triangles[t].map(|v| field.u[v as usize]));
+        let (point, ports) = ports::ports(corners, own, zero, valence);
         singularities.push(Singularity { triangle: t as u32, point, valence, ports });
     }
 

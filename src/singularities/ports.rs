@@ -91,15 +91,30 @@ impl<'a> View<'a> {
     }
 }
 
-/// The ports (edge, share) in counter-clockwise order, `valence` of them.
+/// The singular point and its ports (edge, share) in counter-clockwise order, `valence` of them.
 ///
-/// They are where the cross points away from `point`. If the linear field turns so unevenly that there
-/// are more such places, it is blended with the field that turns evenly about the point (the conformal
-/// part), as little as makes the number right.
-pub(super) fn ports(corners: [Point; 3], field: &TriangleCross, point: Point, valence: u8) -> Vec<(u8, f64)> {
+/// Ports are where the cross points away from the point. Seen from `point` the linear cross may turn so
+/// unevenly that there are more such places. Then the point is moved towards the centroid, and
+/// if that does not help the cross is blended with one that turns evenly about the point (its
+/// conformal part), as little as makes the number right.
+pub(super) fn ports(
+    corners: [Point; 3],
+    field: &TriangleCross,
+    point: Point,
+    valence: u8,
+) -> (Point, Vec<(u8, f64)>) {
+    let centroid = Point::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0);
+    let moves = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| (point + (centroid - point) * share, 0.0));
+    let blends = [0.25, 0.5, 0.75, 1.0].map(|evenness| (centroid, evenness));
+    let mut chosen = (centroid, 1.0);
+    for (place, evenness) in moves.into_iter().chain(blends) {
+        if View::new(corners, field, place, valence).grows(evenness) {
+            chosen = (place, evenness);
+            break;
+        }
+    }
+    let (point, evenness) = chosen;
     let view = View::new(corners, field, point, valence);
-    let blends = [0.0, 0.25, 0.5, 0.75];
-    let evenness = blends.into_iter().find(|&e| view.grows(e)).unwrap_or(1.0);
     let first = (view.excess(0, 0.0, evenness) / FRAC_PI_2).ceil();
     let mut ports: Vec<(u8, f64)> = (0..valence)
         .map(|k| view.solve((first + f64::from(k)) * FRAC_PI_2, evenness))
@@ -111,5 +126,5 @@ pub(super) fn ports(corners: [Point; 3], field: &TriangleCross, point: Point, va
             ports[k].1 = ports[k - 1].1 + 0.1 * (1.0 - ports[k - 1].1);
         }
     }
-    ports
+    (point, ports)
 }

@@ -33,7 +33,7 @@ pub fn resolve(boundary: &Boundary, mut request: Request, method: FieldMethod) -
         let field = solve(&mesh, boundary, method)?;
         let found = find(&mesh, boundary, &field);
         let known = found.as_ref().map_or(&[][..], |(singularities, _)| singularities);
-        match gate(&mesh, &field, known, least) {
+        match gate(&mesh, boundary, &field, known, least) {
             Err(places) if round < ROUNDS => request.refine.extend(places),
             _ => {
                 let (singularities, corners) = found?;

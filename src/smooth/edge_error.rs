@@ -7,14 +7,6 @@ use crate::domain::Chain;
 use crate::numerics::Vector;
 use crate::options::Norm;
 
-/// The boundary tolerance of every edge, in the canonical frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BoundaryTolerance {
-    pub norm: Norm,
-    /// Largest error allowed, in the norm's unit.
-    pub value: f64,
-}
-
 /// Errors far below the limit, as a share of it, count as this: the barrier's root would otherwise
 /// turn rounding errors of straight edges into slopes.
 const NEGLIGIBLE: f64 = 1e-3;

@@ -6,13 +6,15 @@
 
 use super::Optimiser;
 use crate::domain::{BoundaryPoint, Place, Span};
-use crate::mesh::QuadMesh;
+use crate::mesh::{QuadMesh, Vertex};
 use crate::numerics::{Point, Vector, NONE};
 
 /// Share of an element's scaled Jacobian that one move may cost.
 const LEAST_SHARE: f64 = 0.7;
 /// Scaled Jacobians above this count as equally good: a grid of rectangles could not move else.
-const GOOD: f64 = 0.7;
+const GOOD: f64 = 0.5;
+/// Shares of the move that are tried.
+const SHARES: [f64; 3] = [1.0, 0.5, 0.25];
 /// Moves below this share of the shortest edge are not worth measuring.
 const STILL: f64 = 1e-4;
 
@@ -59,51 +61,48 @@ fn relax(optimiser: &Optimiser, mesh: &mut QuadMesh, v: u32, star: &Star, worst:
         (q.min_scaled_jacobian, q.error_ratio)
     };
     let shortest = star.edges.iter().map(|e| chord(mesh, *e).norm()).fold(f64::INFINITY, f64::min) * STILL;
-    match old.place {
-        Place::Interior => {
-            let target = interior_target(mesh, v, star);
-            if (target - old.point).norm() < shortest {
-                return false;
-            }
-            let now = state(mesh);
-            mesh.vertices[v as usize].point = target;
-            let then = state(mesh);
-            if allowed(now, then, worst) {
+    let now = state(mesh);
+    let attempt = |mesh: &mut QuadMesh, apply: &dyn Fn(&mut QuadMesh, f64)| {
+        for share in SHARES {
+            apply(mesh, share);
+            if allowed(now, state(mesh), worst) {
                 return true;
             }
+            mesh.vertices[v as usize] = old;
+            for (e, span) in star.edges.iter().zip(&spans) {
+                mesh.edges[*e as usize].span = *span;
+            }
+        }
+        false
+    };
+    match old.place {
+        Place::Interior => {
+            let step = interior_target(mesh, v, star) - old.point;
+            step.norm() > shortest
+                && attempt(mesh, &|mesh, share| mesh.vertices[v as usize].point = old.point + step * share)
         }
         Place::Boundary(BoundaryPoint { chain, s }) => {
             let [Some(into), Some(out)] = boundary_edges(mesh, v, star) else { return false };
             let length = |e: u32| mesh.edges[e as usize].span.map_or(0.0, |s| s.end - s.start);
             let shift = 0.5 * (length(out) - length(into));
-            if shift.abs() < shortest {
-                return false;
-            }
-            let now = state(mesh);
             let chain_of = &optimiser.boundary().chains[chain as usize];
-            let s = chain_of.wrap(s + shift);
-            let vertex = &mut mesh.vertices[v as usize];
-            (vertex.place, vertex.point) = (Place::Boundary(BoundaryPoint { chain, s }), chain_of.point(s));
-            if let Some(span) = &mut mesh.edges[into as usize].span {
-                span.end += shift;
-            }
-            if let Some(span) = &mut mesh.edges[out as usize].span {
-                let end = span.end - span.start - shift;
-                span.start = s;
-                span.end = s + end;
-            }
-            let then = state(mesh);
-            if allowed(now, then, worst) {
-                return true;
-            }
+            shift.abs() > shortest
+                && attempt(mesh, &|mesh, share| {
+                    let shift = share * shift;
+                    let s = chain_of.wrap(s + shift);
+                    let place = Place::Boundary(BoundaryPoint { chain, s });
+                    mesh.vertices[v as usize] = Vertex { place, point: chain_of.point(s) };
+                    if let Some(span) = &mut mesh.edges[into as usize].span {
+                        span.end += shift;
+                    }
+                    if let Some(span) = &mut mesh.edges[out as usize].span {
+                        let length = span.end - span.start - shift;
+                        (span.start, span.end) = (s, s + length);
+                    }
+                })
         }
-        Place::Junction(_) => return false,
+        Place::Junction(_) => false,
     }
-    mesh.vertices[v as usize] = old;
-    for (e, span) in star.edges.iter().zip(spans) {
-        mesh.edges[*e as usize].span = span;
-    }
-    false
 }
 
 /// (scaled Jacobian, error ratio) before and after a move.

@@ -26,7 +26,6 @@ mod reference;
 mod untangle;
 mod walk;
 
-pub use edge_error::BoundaryTolerance;
 pub use laplacian::equal_spacing;
 pub use optimiser::{Effort, Optimiser, Outcome};
 pub use quality::{ElementQuality, Quality};

@@ -1,6 +1,5 @@
 //! The one optimiser: untangles if it must, then raises the power of the shape energy.
 
-use super::edge_error::BoundaryTolerance;
 use super::kernel::Measure;
 use super::minimiser::{Lbfgs, Limits};
 use super::problem::Problem;
@@ -8,7 +7,7 @@ use super::quality::{self, ElementQuality, Quality};
 use super::reference::Reference;
 use super::untangle::untangle;
 use crate::domain::Boundary;
-use crate::mesh::QuadMesh;
+use crate::mesh::{BoundaryError, BoundaryTolerance, QuadMesh};
 
 /// How much work an optimisation may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,7 +70,7 @@ impl Effort {
 #[derive(Debug, Clone)]
 pub struct Optimiser<'a> {
     boundary: &'a Boundary,
-    tolerance: Option<BoundaryTolerance>,
+    error: Option<BoundaryError>,
     energy: Reference,
     measuring: Reference,
 }
@@ -83,7 +82,7 @@ impl<'a> Optimiser<'a> {
         let order = order.max(1);
         Optimiser {
             boundary,
-            tolerance,
+            error: tolerance.map(BoundaryError::new),
             energy: Reference::for_energy(order),
             measuring: Reference::for_quality(order),
         }
@@ -96,7 +95,12 @@ impl<'a> Optimiser<'a> {
 
     /// The boundary tolerance.
     pub fn tolerance(&self) -> Option<BoundaryTolerance> {
-        self.tolerance
+        self.error.as_ref().map(|e| e.tolerance)
+    }
+
+    /// What measures boundary edges against it.
+    pub fn boundary_error(&self) -> Option<&BoundaryError> {
+        self.error.as_ref()
     }
 
     /// The polynomial order N.
@@ -112,7 +116,7 @@ impl<'a> Optimiser<'a> {
         let mut lbfgs = Lbfgs::default();
         let mut evaluations = 0;
         let new = |mesh: &QuadMesh, slide| {
-            Problem::new(self.boundary, &self.energy, self.tolerance, mesh, active, slide)
+            Problem::new(self.boundary, &self.energy, self.tolerance(), mesh, active, slide)
         };
         let mut problem = new(mesh, true);
         let mut valid = problem.least_jacobian() > 0.0;
@@ -190,6 +194,9 @@ impl<'a> Optimiser<'a> {
 
     /// Error of an edge divided by the tolerance; 0 inside or without a tolerance.
     pub fn error_ratio(&self, mesh: &QuadMesh, edge: u32) -> f64 {
-        quality::error_ratio(self.boundary, &self.measuring, self.tolerance, mesh, edge)
+        match (&self.error, mesh.edges[edge as usize].span) {
+            (Some(error), Some(span)) => error.ratio(self.boundary, span),
+            _ => 0.0,
+        }
     }
 }

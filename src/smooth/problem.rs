@@ -1,13 +1,13 @@
 //! A mesh, or a few of its quads, as a function of unknowns: interior vertices, arc lengths of boundary
 //! vertices, bubbles of interior edges.
 
-use super::edge_error::{barrier, error, squared_error, BoundaryTolerance};
+use super::edge_error::{barrier, error, squared_error};
 use super::kernel::{self, Measure, Sides, Target};
 use super::minimiser::Objective;
 use super::reference::{Reference, MAX_SAMPLES};
 use super::walk::walk;
 use crate::domain::{Boundary, BoundaryPoint, Place, Span};
-use crate::mesh::QuadMesh;
+use crate::mesh::{BoundaryTolerance, QuadMesh};
 use crate::numerics::{Point, Vector, NONE};
 use crate::options::Norm;
 
@@ -759,7 +759,7 @@ mod tests {
     fn gradients_agree_with_differences() {
         let (boundary, mesh) = example();
         let reference = Reference::for_energy(5);
-        let tolerance = Some(BoundaryTolerance { norm: Norm::L2, value: 1e-3 });
+        let tolerance = Some(BoundaryTolerance { norm: Norm::L2, order: 5, value: 1e-3 });
         let mut problem = Problem::new(&boundary, &reference, tolerance, &mesh, None, true);
         let x = problem.unknowns.clone();
         let mut gradient = vec![0.0; x.len()];

@@ -1,6 +1,5 @@
 //! Quality of elements by sampling; the proof of validity is made elsewhere.
 
-use super::edge_error::{error, BoundaryTolerance};
 use super::reference::{bubble, Reference};
 use super::walk::walk;
 use crate::domain::Boundary;
@@ -119,20 +118,4 @@ pub(super) fn element(
         jacobian_ratio: least / most.max(f64::MIN_POSITIVE),
         size: 0.5 * (l[0] + l[2]).max(l[1] + l[3]),
     }
-}
-
-/// Error of boundary edge `edge` divided by the tolerance; 0 inside or without a tolerance.
-pub(super) fn error_ratio(
-    boundary: &Boundary,
-    reference: &Reference,
-    tolerance: Option<BoundaryTolerance>,
-    mesh: &QuadMesh,
-    edge: u32,
-) -> f64 {
-    let (Some(span), Some(tolerance)) = (mesh.edges[edge as usize].span, tolerance) else { return 0.0 };
-    let chain = &boundary.chains[span.chain as usize];
-    let mut nodes = vec![[Vector::zeros(); 2]; reference.nodes.len()];
-    let length = span.end - span.start;
-    walk(chain, span.start, length, &reference.nodes, |i, p, v| nodes[i] = [p, v]);
-    error(reference, chain, span.start, length, &nodes, tolerance.norm) / tolerance.value
 }

@@ -1,0 +1,142 @@
+//! Corners near 45°, where the linear elements alone could not tell which way the cross turns.
+//!
+//! Between the walls of a corner of exactly 45° u runs from (1, 0) to (−1, 0): straight through 0, unless
+//! something says on which side. So u is held on the corner's own solution near it.
+
+use super::border::{quads_at_corner, Border};
+use crate::base_mesh::Triangulation;
+use crate::domain::{Boundary, Place};
+use crate::numerics::tolerances::{TIP_RATE, TIP_SHARE, TIP_TURN};
+use crate::numerics::{cross, Point, NONE};
+use std::f64::consts::FRAC_PI_2;
+
+/// Whether the cross turns so fast across a corner that the sense of its turn is in doubt.
+pub fn is_doubtful(angle: f64, quads: u8) -> bool {
+    (1.0 - f64::from(quads) * FRAC_PI_2 / angle).abs() > TIP_RATE
+}
+
+/// How far from junction `j` the walls are straight enough for the corner's own solution.
+pub fn reach(boundary: &Boundary, j: u32) -> f64 {
+    let junction = &boundary.junctions[j as usize];
+    let along = |chain: u32, forward: bool| {
+        let chain = &boundary.chains[chain as usize];
+        let from = chain.tangent(if forward { 0.0 } else { chain.length });
+        let mut reach = TIP_SHARE * chain.length;
+        // Halved until the wall turns little; curvature is finite, so few halvings do.
+        for _ in 0..24 {
+            let tangent = chain.tangent(if forward { reach } else { chain.length - reach });
+            if cross(from, tangent).atan2(from.dot(&tangent)).abs() < TIP_TURN {
+                break;
+            }
+            reach *= 0.5;
+        }
+        reach
+    };
+    along(junction.chain_out, true).min(along(junction.chain_in, false))
+}
+
+/// The doubtful corners of the boundary, each with its reach.
+pub fn doubtful_corners(boundary: &Boundary) -> Vec<(Point, f64)> {
+    (0u32..)
+        .zip(&boundary.junctions)
+        .filter(|(_, junction)| is_doubtful(junction.angle, quads_at_corner(junction.angle)))
+        .map(|(j, junction)| (junction.point, reach(boundary, j)))
+        .collect()
+}
+
+/// What a corner's own solution says of a vertex near it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Held {
+    /// The corner.
+    pub tip: u32,
+    /// The cross at the vertex, lifted: differences between vertices of one corner are true turns.
+    pub cross: f64,
+}
+
+/// For each vertex, border vertices included, what a doubtful corner near it says.
+pub(super) fn held(mesh: &Triangulation, boundary: &Boundary, border: &Border) -> Vec<Option<Held>> {
+    let mut held = vec![None; mesh.vertices.len()];
+    let mut seen = vec![NONE; mesh.triangles.len()];
+    for (t, corners) in mesh.triangles.iter().enumerate() {
+        // Once for each corner: at the triangle on its outgoing border edge.
+        for i in (0..3).filter(|&i| mesh.neighbors[t][i] == NONE) {
+            let tip = corners[i];
+            let Place::Junction(j) = mesh.vertices[tip as usize].place else { continue };
+            if is_doubtful(border.angle[tip as usize], border.quads[tip as usize]) {
+                let found = vertices_near(mesh, boundary, t, j, tip, &mut seen);
+                for v in found {
+                    let phi = polar_angle(mesh, boundary, border, (t, i), j, v);
+                    held[v as usize] = Some(Held { tip, cross: border.cross_at(tip, phi) });
+                }
+            }
+        }
+    }
+    held
+}
+
+/// The polar angle of vertex `v` about corner `i` of triangle `t`; 0 or the whole angle on its walls.
+fn polar_angle(
+    mesh: &Triangulation,
+    boundary: &Boundary,
+    border: &Border,
+    (t, i): (usize, usize),
+    j: u32,
+    v: u32,
+) -> f64 {
+    let junction = &boundary.junctions[j as usize];
+    let [tip, next] = [mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3]];
+    let whole = border.angle[tip as usize];
+    match mesh.vertices[v as usize].place {
+        Place::Boundary(p) if p.chain == junction.chain_out => 0.0,
+        Place::Boundary(_) => whole,
+        _ => {
+            let at = mesh.vertices[tip as usize].point;
+            let [a, b] = [next, v].map(|v| mesh.vertices[v as usize].point - at);
+            cross(a, b).atan2(a.dot(&b)).clamp(0.0, whole)
+        }
+    }
+}
+
+/// The vertices near corner `tip` (junction `j`, first triangle `t`): within its reach, and nearer
+/// than half way to other parts of the boundary. Walks across triangles, so that what lies behind a wall
+/// is not found.
+fn vertices_near(
+    mesh: &Triangulation,
+    boundary: &Boundary,
+    t: usize,
+    j: u32,
+    tip: u32,
+    seen: &mut [u32],
+) -> Vec<u32> {
+    let junction = &boundary.junctions[j as usize];
+    // A chain that is both walls of its corner has its middle beyond the reach.
+    let walls = [junction.chain_in, junction.chain_out];
+    let reach = reach(boundary, j);
+    let at = mesh.vertices[tip as usize].point;
+    let distance = |v: u32| (mesh.vertices[v as usize].point - at).norm();
+    let mut front = vec![t];
+    seen[t] = tip;
+    let mut found = Vec::new();
+    let mut free = reach;
+    while let Some(t) = front.pop() {
+        for k in 0..3 {
+            let v = mesh.triangles[t][k];
+            match mesh.vertices[v as usize].place {
+                Place::Interior => found.push(v),
+                Place::Boundary(p) if walls.contains(&p.chain) => found.push(v),
+                _ if v == tip => {}
+                _ => free = free.min(0.5 * distance(v)),
+            }
+            let next = mesh.neighbors[t][k];
+            let near = distance(v).min(distance(mesh.triangles[t][(k + 1) % 3])) < reach;
+            if next != NONE && near && seen[next as usize] != tip {
+                seen[next as usize] = tip;
+                front.push(next as usize);
+            }
+        }
+    }
+    found.sort_unstable();
+    found.dedup();
+    found.retain(|&v| distance(v) < free);
+    found
+}
