@@ -3,13 +3,10 @@
 use crate::domain::Boundary;
 use crate::error::Result;
 use crate::mesh::{irregularity_bound, quads_by_table, scaled_jacobian_ceiling, HighOrderMesh, Irregular};
+use crate::numerics::tolerances::JOIN;
 use crate::numerics::{Point, NONE};
 use crate::progress::Stage;
 use crate::stages::{Round, Stages};
-
-/// How far a mesh vertex may lie from the junction it stands for, in the canonical frame: it is put
-/// there exactly, so only the rounding of two changes of frame remains.
-const SAME_POINT: f64 = 1e-9;
 
 /// A distribution of a quality measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -155,9 +152,11 @@ fn irregular(mesh: &HighOrderMesh, boundary: &Boundary) -> Irregular {
     border.sort_by(|a, b| a.0.x.total_cmp(&b.0.x));
     let on_border: Vec<usize> = border.iter().map(|(_, v)| *v).collect();
     for junction in &boundary.junctions {
-        let first = border.partition_point(|(p, _)| p.x < junction.point.x - SAME_POINT);
-        let close = border[first..].iter().take_while(|(p, _)| p.x <= junction.point.x + SAME_POINT);
-        for (_, v) in close.filter(|(p, _)| (p - junction.point).norm() <= SAME_POINT) {
+        // The vertex that stands for it is exact; the junction may be off by a gap that was closed.
+        let from = border.partition_point(|(p, _)| p.x < junction.point.x - JOIN);
+        let close = border[from..].iter().take_while(|(p, _)| p.x <= junction.point.x + JOIN);
+        let distance = |p: &Point| (p - junction.point).norm();
+        if let Some((_, v)) = close.min_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0))) {
             expected[*v] = quads_by_table(junction.angle);
         }
     }

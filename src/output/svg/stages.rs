@@ -7,10 +7,10 @@ use crate::domain::{Boundary, Frame, Span};
 use crate::numerics::{Point, Vector, NONE};
 use crate::stages::Stages;
 
-/// Distance of crosses in SVG units: about this many triangles share one cross.
-const CROSS_SPACING: f64 = 17.0;
+/// Distance of crosses in SVG units; between them, triangles go without.
+const CROSS_SPACING: f64 = 15.0;
 /// Radius of marks in SVG units.
-const MARK: f64 = 6.5;
+const MARK: f64 = 5.5;
 
 /// Whether the run came as far as this picture.
 pub fn reached(stages: &Stages, picture: Picture) -> bool {
@@ -124,12 +124,16 @@ impl Drawing<'_> {
         let arm = 0.42 * cell;
         let mut taken = std::collections::BTreeSet::new();
         self.canvas.lines(Stroke { color: CROSS, width: 1.0 }, |path| {
-            for (vertex, u) in base.vertices.iter().zip(&field.u) {
-                let at = frame.to_caller(vertex.point);
+            for corners in &base.triangles {
+                let sum =
+                    |value: &dyn Fn(usize) -> f64| corners.iter().map(|v| value(*v as usize)).sum::<f64>();
+                let coordinate = |c: usize| sum(&|v| base.vertices[v].point[c]) / 3.0;
+                let at = frame.to_caller(Point::new(coordinate(0), coordinate(1)));
                 let seat = ((at.x / cell).floor() as i64, (at.y / cell).floor() as i64);
                 if !taken.insert(seat) {
                     continue;
                 }
+                let u = [0, 1].map(|c| sum(&|v| field.u[v][c]));
                 let angle = 0.25 * u[1].atan2(u[0]) + frame.axis.y.atan2(frame.axis.x);
                 let a = Vector::new(angle.cos(), angle.sin()) * arm;
                 let b = Vector::new(-a.y, a.x);
@@ -162,7 +166,7 @@ impl Drawing<'_> {
         self.marks();
         let count = |valence: u8| self.stages.singularities.iter().filter(|s| s.valence == valence).count();
         self.canvas.caption(format!(
-            "singularities: {} of valence 3, {} of valence 5; {} corners",
+            "singularities: {} three-, {} five-valent, {} corners",
             count(3),
             count(5),
             self.stages.corners.len()
