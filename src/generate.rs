@@ -85,6 +85,6 @@ fn steps_1_to_9(
 
     // The proof: curved elements of order N with positive Jacobians, on the exact curves.
     watch.run(stages, Stage::Mesh, |_| {
-        HighOrderMesh::with_curve(&mesh, boundary, &TableCurve(boundary), tolerance)
+        HighOrderMesh::new(&mesh, boundary, domain, tolerance)
     })
 }
