@@ -17,7 +17,7 @@ fn square_at(x: f64, y: f64, side: f64) -> Vec<[f64; 2]> {
 fn refusal(add: impl FnOnce(&mut DomainBuilder)) -> Error {
     let mut builder = Domain::builder();
     add(&mut builder);
-    builder.build().err().expect("the domain is refused")
+    builder.build().expect_err("the domain is refused")
 }
 
 fn polygon(corners: &[[f64; 2]]) -> Error {
@@ -418,8 +418,8 @@ fn malformed_control_file() {
         ("\\begin{PARAMETRIC_EQUATION_CURVE}", "\\begin PARAMETRIC", 13, 7),
         ("\\begin{PARAMETRIC_EQUATION_CURVE}\n", "\\begin{SQUIGGLE}\n", 18, 7),
         ("\\begin{MODEL}\n", "\\end{MODEL}\n", 1, 1),
-        ("0.1*sin(pi*t)", "0.1*sin(pi*t", 15, 34),
-        ("0.1*sin(pi*t)", "0.1*sinus(pi*t)", 15, 26),
+        ("0.1*sin(pi*t)", "0.1*sin(pi*t", 15, 36),
+        ("0.1*sin(pi*t)", "0.1*sinus(pi*t)", 15, 28),
         ("y(t) = 1 - t", "1 - t", 16, 17),
     ] {
         assert_eq!(parse_place(control_error(from, to)), (line, column), "{to}");
