@@ -176,6 +176,7 @@ fn slit_end_has_two_pi_and_reentrant_corner_more_than_pi() {
     b.add_bezier(&[[2.0, -1.0], [1.0, 0.0], [0.0, 0.0]], "").unwrap();
     b.end_loop().unwrap();
     let d = b.build().unwrap();
+    d.check().unwrap();
     let angles: Vec<f64> = boundary(&d).junctions.iter().map(|j| j.angle).collect();
     assert_eq!(angles.iter().filter(|a| (**a - 2.0 * PI).abs() < 1e-9).count(), 1, "{angles:?}");
     let l = Domain::polygon(&[[0., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]], &[]).unwrap();
@@ -346,5 +347,56 @@ fn canonical_diagonal_is_one_and_centroid_the_origin() {
             high = Point::new(high.x.max(p.x), high.y.max(p.y));
         }
         assert!(((high - low).norm() - 1.0).abs() < 1e-3);
+    }
+}
+
+/// A plate with holes in it, turned by `angle`, its corners given from number `start` on.
+fn plate(corners: &[[f64; 2]], holes: &[([f64; 2], f64)], angle: f64, start: usize) -> Boundary {
+    let (sin, cos) = if angle == 0.0 { (0.0, 1.0) } else { angle.sin_cos() };
+    let at = |p: [f64; 2]| [p[0] * cos - p[1] * sin, p[0] * sin + p[1] * cos];
+    let n = corners.len();
+    let mut b = Domain::builder();
+    let turned: Vec<_> = (0..n).map(|i| at(corners[(i + start) % n])).collect();
+    b.add_polygon(LoopKind::Outer, &turned).unwrap();
+    for &(center, radius) in holes {
+        b.begin_loop(LoopKind::Hole, "").unwrap();
+        b.add_arc(at(center), radius, angle, angle + 2.0 * PI, "").unwrap();
+        b.end_loop().unwrap();
+    }
+    let domain = b.build().unwrap();
+    domain.check().unwrap();
+    boundary(&domain)
+}
+
+#[test]
+fn symmetric_domains_have_one_pose() {
+    let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let isosceles = [[-1.0, 0.0], [1.0, 0.0], [0.0, 0.5]];
+    let rectangle = [[-2.0, -1.0], [2.0, -1.0], [2.0, 1.0], [-2.0, 1.0]];
+    let grid: Vec<_> =
+        (0..9).map(|k| ([(k % 3) as f64 * 0.5 - 0.5, (k / 3) as f64 * 0.5 - 0.5], 0.1)).collect();
+    let pair = [([0.5, 0.0], 0.2), ([-0.5, 0.0], 0.2)];
+    for (corners, holes) in [
+        (&square[..], &grid[..]),
+        (&square[..], &pair[..]),
+        (&square[..], &[]),
+        (&isosceles[..], &[]),
+        (&rectangle[..], &pair[..]),
+    ] {
+        let reference = plate(corners, holes, 0.0, 0);
+        for (angle, start) in [(0.3, 0), (1.9, 1), (3.7, 2), (PI, 0)] {
+            let b = plate(corners, holes, angle, start);
+            for (x, y) in b.junctions.iter().zip(&reference.junctions) {
+                assert!((x.point - y.point).norm() < 1e-9, "{angle}: {} {}", x.point, y.point);
+            }
+            // The seams of the holes are the caller's, so only the circles can be compared.
+            let centers = |b: &Boundary| -> Vec<Point> {
+                let closed = b.chains.iter().filter(|c| c.ends.is_none());
+                closed.map(|c| nalgebra::center(&c.point(0.0), &c.point(0.5 * c.length))).collect()
+            };
+            for (x, y) in centers(&b).iter().zip(&centers(&reference)) {
+                assert!((x - y).norm() < 1e-9, "{angle}: {x} {y}");
+            }
+        }
     }
 }

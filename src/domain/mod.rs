@@ -18,6 +18,7 @@ mod canonical;
 mod crossing;
 mod curve;
 mod differences;
+mod domain_check;
 mod exact;
 mod frame;
 mod gauss;
