@@ -213,6 +213,36 @@ fn tolerances_are_converted_to_the_canonical_frame() {
     }
 }
 
+#[test]
+fn corners_inside_a_callback_are_junctions() {
+    // A whole square as one curve, and one with a bend of 0.01 rad inside a side.
+    let square = |t: f64| {
+        let u = 4.0 * (t % 1.0);
+        let side = [u, 1.0, 3.0 - u, 0.0];
+        let k = (u as usize).min(3);
+        Ok([side[k].clamp(0.0, 1.0), [0.0, u - 1.0, 1.0, 4.0 - u][k]])
+    };
+    let d = outer(|b| {
+        b.add_callback(Box::new(square), None, "").unwrap();
+    });
+    let b = boundary(&d);
+    assert!((d.area().unwrap() - 1.0).abs() < 1e-9);
+    assert_eq!(b.junctions.len(), 4);
+    assert!(b.junctions.iter().all(|j| (j.angle - PI / 2.0).abs() < 1e-7));
+    assert!(b.chains.iter().all(|c| (c.length * b.frame.scale - 1.0).abs() < 1e-9));
+    let bent = outer(|b| {
+        b.add_callback(Box::new(|t| Ok([3.0 * t, -0.005 + 0.005 * (3.0 * t - 1.0).abs()])), None, "")
+            .unwrap();
+        b.add_line([3.0, 0.005], [0.0, 2.0], "").unwrap();
+        b.add_line([0.0, 2.0], [0.0, 0.0], "").unwrap();
+    });
+    let b = boundary(&bent);
+    let bend = b.junctions.iter().find(|j| (j.angle - PI).abs() < 0.1).unwrap();
+    assert!((PI - bend.angle - 0.01).abs() < 1e-4, "{}", bend.angle);
+    let x = b.frame.to_caller(bend.point).x;
+    assert!((x - 1.0).abs() < 1e-9, "{x}");
+}
+
 /// A transformation of the test domain and how its loops are given.
 #[derive(Clone, Copy)]
 struct Pose {

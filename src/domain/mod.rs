@@ -15,6 +15,7 @@ mod box_tree;
 mod builder;
 mod callback;
 mod canonical;
+mod corners_inside;
 mod crossing;
 mod curve;
 mod differences;
