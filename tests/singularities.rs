@@ -58,10 +58,10 @@ fn diffusion_keeps_the_disc_s_singularities_apart() {
             r.singularities.iter().filter(|s| s.valence == 3).count(),
             4 + r.singularities.len() / 2 - 2
         );
-        let middle = 0.25 * (0..4).map(|i| f64::from(i) * 0.25 * b.chains[0].length).fold(
-            quadrel::numerics::Vector::zeros(),
-            |sum, s| sum + b.chains[0].point(s).coords,
-        );
+        let middle = 0.25
+            * (0..4)
+                .map(|i| f64::from(i) * 0.25 * b.chains[0].length)
+                .fold(quadrel::numerics::Vector::zeros(), |sum, s| sum + b.chains[0].point(s).coords);
         let mean: f64 = r.singularities.iter().map(|s| (s.point.coords - middle).norm()).sum();
         // The disc's radius is 1/√8 of its bounding box's diagonal.
         mean / r.singularities.len() as f64 * 8f64.sqrt()

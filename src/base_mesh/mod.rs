@@ -16,6 +16,9 @@ mod delaunay;
 mod locate;
 mod sampling;
 mod size_field;
+mod tips;
+
+pub use tips::{doubtful_corners, doubtful_reach};
 
 use crate::domain::{Boundary, Place};
 use crate::error::{Error, Result};
