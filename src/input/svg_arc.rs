@@ -7,7 +7,7 @@ use crate::numerics::{Point, Vector};
 pub(crate) struct CenterArc(EllipticArc);
 
 impl CenterArc {
-    /// `None`: a radius is 0, the arc is a straight line. Radii too small for the end points are
+    /// `None`: a radius is 0 (the arc is a straight line) or the ends coincide. Radii too small for the end points are
     /// enlarged, `rotation` is in degrees.
     pub fn from_end_points(
         from: [f64; 2],
@@ -18,7 +18,7 @@ impl CenterArc {
         sweep: bool,
     ) -> Option<Self> {
         let [mut a, mut b] = radii.map(f64::abs);
-        if a == 0.0 || b == 0.0 {
+        if a == 0.0 || b == 0.0 || from == to {
             return None;
         }
         let (p, q) = (Vector::from(from), Vector::from(to));
@@ -30,8 +30,8 @@ impl CenterArc {
             a *= excess.sqrt();
             b *= excess.sqrt();
         }
-        let below = (a * y).powi(2) + (b * x).powi(2);
-        let mut factor = if below == 0.0 { 0.0 } else { (((a * b).powi(2) - below) / below).max(0.0).sqrt() };
+        // (a²b² − a²y² − b²x²) / (a²y² + b²x²), whose numerator would cancel for half circles.
+        let mut factor = if excess < 1.0 { (1.0 / excess - 1.0).sqrt() } else { 0.0 };
         if large == sweep {
             factor = -factor;
         }

@@ -130,3 +130,7 @@ pub const TABLE_ERROR: f64 = 1e-11;
 /// Table intervals shorter than this, relative to the canonical diagonal, are not divided further: a
 /// singular parametrisation ends somewhere.
 pub const TABLE_SHORTEST: f64 = 1e-9;
+
+/// Distance from the tip of a cusp, relative to the smaller of its two segments, within which its branches may
+/// come closer than the touching distance: with any visible difference of curvature they are further apart beyond.
+pub const CUSP_REACH: f64 = 1e-2;
