@@ -315,7 +315,7 @@ fn regions_of_one_and_two_sides_are_halved() {
     let (half, whole) = (std::f64::consts::PI, std::f64::consts::TAU);
     let mut lens = nowhere();
     add_loop(&mut lens, &[arc(0.0, half), arc(half, whole)]);
-    let two = draw(&lens, &[(1.0, 0.5), (0.0, 0.5)], &[vec![vec![0], vec![1]]], &[]);
+    let two = draw(&lens, &[(1.0, 0.5), (0.0, 0.5), (0.5, 1.0)], &[vec![vec![0, 2], vec![1]]], &[]);
     let mut drop = nowhere();
     add_loop(&mut drop, &[arc(0.0, whole)]);
     let one = draw(&drop, &[(1.0, 0.5)], &[vec![vec![0]]], &[]);
