@@ -7,10 +7,11 @@
 
 use crate::domain::boundary_loop::BoundaryLoop;
 use crate::domain::box_tree::BoxTree;
-use crate::domain::piece::{pieces_of, segment_distance, Piece};
+use crate::domain::piece::{distance_to_segment, pieces_of, segment_distance, Piece};
 use crate::error::{Error, Result};
-use crate::numerics::cross;
-use crate::numerics::tolerances::{CUSP_REACH, TOUCH};
+use crate::numerics::tolerances::{CUSP_ANGLE, CUSP_REACH, SAME_MOMENTS, TOUCH};
+use crate::numerics::{cross, Point};
+use std::f64::consts::PI;
 
 /// Most halvings of one pair of pieces, all branches together: curves closer to each other than can be
 /// resolved with them count as touching.
@@ -27,12 +28,16 @@ enum Adjacency {
 
 struct Checker<'a> {
     loops: Vec<&'a BoundaryLoop>,
+    /// For each loop the cusps at the starts of its segments.
+    cusps: Vec<Vec<Option<Cusp>>>,
     touch: f64,
 }
 
 /// Refuses loops that cross or touch themselves or each other.
 pub(crate) fn check<'a>(loops: impl IntoIterator<Item = &'a BoundaryLoop>, diagonal: f64) -> Result<()> {
-    let checker = Checker { loops: loops.into_iter().collect(), touch: TOUCH * diagonal };
+    let loops: Vec<_> = loops.into_iter().collect();
+    let cusps = loops.iter().map(|l| Cusp::all(l)).collect::<Result<Vec<_>>>()?;
+    let checker = Checker { loops, cusps, touch: TOUCH * diagonal };
     let mut pieces = Vec::new();
     for (k, l) in checker.loops.iter().enumerate() {
         for (i, s) in l.segments().iter().enumerate() {
@@ -75,20 +80,33 @@ impl Checker<'_> {
                 _ => {}
             }
             let (distance, at) = segment_distance(&a.ends, &b.ends);
-            if distance > fat + self.touch || self.near_cusp(&a, &b)? {
+            let cusp = self.cusp_between(&a, &b);
+            if distance > fat + self.touch || cusp.is_some_and(|c| c.exempts(&a) && c.exempts(&b)) {
                 continue;
             }
             steps += 1;
             let segments = [&a, &b].map(|p| &self.loops[p.loop_at as usize].segments()[p.segment as usize]);
-            // Straight pieces never change by halving; the thicker one is halved, or the longer of neighbours.
-            let first_is_worse =
-                if adjacency == Adjacency::Apart { a.deviation >= b.deviation } else { a.spread >= b.spread };
+            let longer = a.chord().norm() >= b.chord().norm();
+            // Pieces at a cusp are cut until they lie within its reach or beyond; else the thicker one is
+            // halved, or of neighbours the one that turns more.
+            let cut = cusp.is_some_and(|c| c.divides(if longer { &a } else { &b }));
+            let first_is_worse = match adjacency {
+                _ if cut => longer,
+                Adjacency::Apart => a.deviation >= b.deviation,
+                _ => a.spread >= b.spread,
+            };
             let thin = fat <= 0.25 * self.touch;
             let (worse, segment) = if first_is_worse { (&a, segments[0]) } else { (&b, segments[1]) };
-            let bottom = adjacency == Adjacency::Apart && thin;
-            if bottom || steps > MOST_STEPS || !worse.is_divisible() || segment.is_line() {
+            let bottom = !cut && (segment.is_line() || (adjacency == Adjacency::Apart && thin));
+            if bottom || steps > MOST_STEPS || !worse.is_divisible() {
                 let loops = [&a, &b].map(|p| self.loops[p.loop_at as usize].index());
                 let segments = segments.map(|s| s.index());
+                if a.loop_at != b.loop_at && self.are_equal(a.loop_at, b.loop_at)? {
+                    let (loop_index, segment) =
+                        (loops[0].max(loops[1]), segments[usize::from(loops[1] > loops[0])]);
+                    let reason = "the same loop twice";
+                    return Err(Error::Degenerate { loop_index, segment, reason, at });
+                }
                 return Err(Error::Intersection { loops, segments, at });
             }
             let [p, q] = worse.halves(segment)?;
@@ -101,29 +119,62 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// Whether both pieces lie in the last bit before a joint of reversed direction, one on each side: there
-    /// they come arbitrarily close without fault. On which side of each other they lie is
-    /// decided by the angle there.
-    fn near_cusp(&self, a: &Piece, b: &Piece) -> Result<bool> {
+    /// Whether two loops that meet are the same curve: equal moments of area, whatever their start, direction
+    /// and segments.
+    fn are_equal(&self, a: u32, b: u32) -> Result<bool> {
+        let [a, b] = [a, b].map(|k| self.loops[k as usize]);
+        let origin = a.segments()[0].start()?;
+        let (p, q) = (a.moments(origin)?, b.moments(origin)?);
+        let size = p.area.abs().max(q.area.abs());
+        let same = |x: f64, y: f64, size: f64| (x.abs() - y.abs()).abs() <= SAME_MOMENTS * size;
+        let length = size.sqrt();
+        Ok(same(p.area, q.area, size) && same(p.x, q.x, size * length) && same(p.y, q.y, size * length))
+    }
+
+    /// The cusp at which the segments of two pieces join, if they do: pieces before and after it.
+    fn cusp_between(&self, a: &Piece, b: &Piece) -> Option<&Cusp> {
         if a.loop_at != b.loop_at {
-            return Ok(false);
+            return None;
         }
-        let l = self.loops[a.loop_at as usize];
-        let n = l.segments().len() as u32;
-        for (p, q) in [(a, b), (b, a)] {
-            if (p.segment + 1) % n != q.segment || (n == 1 && p.t[0] <= q.t[0]) {
-                continue;
+        let cusps = &self.cusps[a.loop_at as usize];
+        [(a, b), (b, a)].into_iter().find_map(|(p, q)| {
+            let joins = (p.segment + 1) % cusps.len() as u32 == q.segment;
+            let facing = p.segment != q.segment || (p.t[0] >= 0.5 && q.t[1] <= 0.5);
+            cusps[q.segment as usize].as_ref().filter(|_| joins && facing)
+        })
+    }
+}
+
+/// A joint where the direction is reversed. Its branches come arbitrarily close near the tip without fault;
+/// on which side of each other they lie is decided by the angle there.
+struct Cusp {
+    tip: Point,
+    reach: f64,
+}
+
+impl Cusp {
+    /// The cusp at the start of each segment of a loop, where there is one.
+    fn all(l: &BoundaryLoop) -> Result<Vec<Option<Cusp>>> {
+        let cusp = |i: usize| {
+            if l.turn(i)?.abs() < PI - CUSP_ANGLE {
+                return Ok(None);
             }
-            let (before, after) = (&l.segments()[p.segment as usize], &l.segments()[q.segment as usize]);
+            let (before, after) = (&l.segments()[l.before(i)], &l.segments()[i]);
             let reach = CUSP_REACH * before.size()?.min(after.size()?);
-            let tip = after.start()?;
-            let within = |piece: &Piece| piece.ends.iter().all(|e| (e - tip).norm() <= reach);
-            if within(p) && within(q) && p.t[1] > 0.5 && q.t[0] < 0.5 {
-                let (u, v) = (before.end_tangent(true)?, after.end_tangent(false)?);
-                return Ok(u.dot(&v) < 0.0 && cross(u, v).abs() < 1e-3);
-            }
-        }
-        Ok(false)
+            Ok(Some(Cusp { tip: after.start()?, reach }))
+        };
+        (0..l.segments().len()).map(cusp).collect()
+    }
+
+    /// Whether the whole piece is near the tip.
+    fn exempts(&self, piece: &Piece) -> bool {
+        piece.ends.iter().all(|e| (e - self.tip).norm() <= self.reach)
+    }
+
+    /// Whether a part of the piece may be near the tip, and the piece is long enough to tell it from the rest.
+    fn divides(&self, piece: &Piece) -> bool {
+        let near = distance_to_segment(self.tip, &piece.ends) <= self.reach + piece.deviation;
+        near && piece.chord().norm() > 0.1 * self.reach
     }
 }
 

@@ -68,3 +68,9 @@ pub const EXACT_FOOT: f64 = 1e-15;
 /// Distance from the tip of a cusp, relative to the smaller of its two segments, within which its branches may
 /// come closer than the touching distance: with any visible difference of curvature they are further apart beyond.
 pub const CUSP_REACH: f64 = 1e-2;
+
+/// Arc length, relative to the canonical diagonal, to which a curve's parameter is found for a given arc length.
+pub const ARC_LENGTH_MATCH: f64 = 1e-13;
+
+/// Relative difference of area and of its moments below which two loops that meet are the same.
+pub const SAME_MOMENTS: f64 = 1e-6;
