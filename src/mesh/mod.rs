@@ -35,7 +35,7 @@ pub use bubbles::{bubble_shape, fit_bubbles, part_of_bubbles, reversed_bubbles};
 pub use ceiling::{
     irregular, irregularity_bound, quads_by_table, scaled_jacobian_ceiling, Irregular, IrregularityBound,
 };
-pub use exact_curve::{CurvePlace, DomainCurve, ExactCurve, TableCurve};
+pub use exact_curve::{CallerPlace, DomainCurve, ExactCurve, TableCurve};
 pub use geometry::Geometry;
 pub use measures::{ElementMeasures, Quality};
 pub use quad_mesh::{Edge, QuadMesh, Vertex};

@@ -62,9 +62,6 @@ pub const TABLE_ERROR: f64 = 1e-11;
 /// singular parametrisation ends somewhere.
 pub const TABLE_SHORTEST: f64 = 1e-9;
 
-/// Distance along the tangent, relative to the domain's diagonal, at which a point of the exact curve
-/// is at the wanted arc length: a few roundings of a coordinate.
-pub const EXACT_FOOT: f64 = 1e-15;
 /// Distance from the tip of a cusp, relative to the smaller of its two segments, within which its branches may
 /// come closer than the touching distance: with any visible difference of curvature they are further apart beyond.
 pub const CUSP_REACH: f64 = 1e-2;
