@@ -68,7 +68,7 @@ fn make(arguments: &MeshArguments, stages: &mut Stages) -> std::result::Result<M
     options.check()?;
     let model = match &arguments.domain {
         Some(path) => input::read(path, arguments.component),
-        None => Ok(input::gingerbread_man()),
+        None => input::gingerbread_man(),
     }?;
     complete(&mut options, arguments, &model);
     let title = report::title(&model.name, &options);
