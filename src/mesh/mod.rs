@@ -6,6 +6,7 @@
 
 mod bernstein_proof;
 mod boundary_error;
+mod bubbles;
 mod ceiling;
 mod conformity;
 mod exact_curve;
@@ -16,6 +17,7 @@ mod quad_mesh;
 
 pub use bernstein_proof::{JacobianProof, Verdict};
 pub use boundary_error::{BoundaryError, BoundaryTolerance};
+pub use bubbles::{bubble_shape, fit_bubbles, part_of_bubbles, reversed_bubbles};
 pub use ceiling::{
     irregular, irregularity_bound, quads_by_table, scaled_jacobian_ceiling, Irregular, IrregularityBound,
 };

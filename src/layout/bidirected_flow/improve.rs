@@ -2,7 +2,7 @@
 
 use super::{BidirectedFlow, Step};
 use crate::numerics::NONE;
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::BTreeSet;
 
 impl BidirectedFlow {
     /// Whether lowering `variable` by one is allowed.
@@ -34,100 +34,83 @@ impl BidirectedFlow {
         }
     }
 
-    /// Adds closed walks of negative cost until none is left (or a step limit): label correction over
-    /// the whole double cover, with a look for cycles in the parent links now and then.
+    /// Adds closed walks of negative cost until none is left (or a step limit): label correction over the
+    /// double cover from the states in the queue on, with a look for cycles in the parent links now and then.
     pub(super) fn improve(&mut self) {
-        let states = 2 * self.equations + 1;
-        let ground = self.ground() as usize;
-        let mut distance = vec![0i64; states];
+        let states = self.labels.len();
         let mut parent = vec![(NONE, NONE, 0i32); states];
-        let mut queue: VecDeque<u32> = (0..states as u32).collect();
-        let mut queued = vec![true; states];
-        let mut banned = vec![[false; 2]; self.variables.len()];
+        let mut banned: BTreeSet<(u32, Step)> = BTreeSet::new();
         let scan_after = states / 8 + 32;
         let mut changes = 0;
         let mut left = 4_000 * (self.variables.len() as u64 + 100);
         let mut leaving = Vec::new();
-        let mut touched = BTreeSet::new();
-        while let Some(s) = queue.pop_front() {
-            queued[s as usize] = false;
+        let mut taken = BTreeSet::new();
+        while let Some(s) = self.queue.pop_front() {
+            self.queued[s as usize] = false;
             leaving.clear();
             self.transitions(s, |a, step, t| leaving.push((a, step, t)));
             left = left.saturating_sub(leaving.len() as u64);
             if left == 0 {
-                return;
+                break;
             }
             for &(a, step, t) in &leaving {
-                if banned[a][(step > 0) as usize] || (step < 0 && !self.can_lower(a)) {
+                let label = self.labels[s as usize] + self.marginal(a, step);
+                if label >= self.labels[t as usize]
+                    || (step < 0 && !self.can_lower(a))
+                    || banned.contains(&(s, (a as u32, step)))
+                {
                     continue;
                 }
-                let d = distance[s as usize] + self.marginal(a, step);
-                if d < distance[t as usize] {
-                    distance[t as usize] = d;
-                    parent[t as usize] = (s, a as u32, step);
-                    changes += 1;
-                    if !queued[t as usize] {
-                        queued[t as usize] = true;
-                        queue.push_back(t);
-                    }
+                self.labels[t as usize] = label;
+                parent[t as usize] = (s, a as u32, step);
+                changes += 1;
+                if !self.queued[t as usize] {
+                    self.queued[t as usize] = true;
+                    self.queue.push_back(t);
                 }
             }
-            if changes < scan_after && !queue.is_empty() {
+            if changes == 0 || (changes < scan_after && !self.queue.is_empty()) {
                 continue;
             }
             changes = 0;
-            touched.clear();
-            for steps in cycles(&parent) {
+            taken.clear();
+            for walk in cycles(&parent) {
+                let steps: Vec<Step> = walk.iter().map(|w| w.1).collect();
                 // The mirror image of a walk just taken is refused for good reason: no cause to ban.
-                let mirrored = steps.iter().any(|s| touched.contains(&s.0));
+                let mirrored = steps.iter().any(|s| taken.contains(&s.0));
                 if self.take(&steps) {
-                    touched.extend(steps.iter().map(|s| s.0));
+                    taken.extend(steps.iter().map(|s| s.0));
                 } else if !mirrored {
-                    Self::ban(&steps, &mut banned);
+                    Self::ban(walk, &mut banned);
                 }
-                // Labels that rest on a changed variable are worth nothing any more; what
-                // leaves the states at its ends, or at those of its rows, has new costs.
+                // Labels that rest on a changed or banned step are worth nothing any more.
                 for &(a, _) in &steps {
-                    let siblings =
-                        self.rows_of[a as usize].iter().flat_map(|&r| &self.rows[r as usize].variables);
-                    for &b in siblings.chain([&a]) {
-                        for end in self.variables[b as usize].ends {
-                            let at = if end.equation == NONE { ground } else { 2 * end.equation as usize };
-                            for s in at..(at + 2).min(states) {
-                                if parent[s].1 == a {
-                                    parent[s] = (NONE, NONE, 0);
-                                }
-                                if !queued[s] {
-                                    queued[s] = true;
-                                    queue.push_back(s as u32);
-                                }
+                    for end in self.variables[a as usize].ends {
+                        for t in [self.state(end, 1), self.state(end, -1)] {
+                            if parent[t as usize].1 == a {
+                                parent[t as usize] = (NONE, NONE, 0);
                             }
                         }
                     }
+                    self.touch(a as usize);
                 }
             }
         }
+        // The next descent may try again what was banned in this one.
+        banned.into_iter().for_each(|(_, (a, _))| self.touch(a as usize));
     }
 
-    /// Bans the steps by which a refused walk went through a variable twice; all of them if there is none.
-    fn ban(steps: &[Step], banned: &mut [[bool; 2]]) {
-        let mut sorted = steps.to_vec();
-        sorted.sort_unstable();
-        let mut any = false;
-        for pair in sorted.windows(2).filter(|p| p[0] == p[1]) {
-            banned[pair[0].0 as usize][(pair[0].1 > 0) as usize] = true;
-            any = true;
-        }
-        if !any {
-            for (a, step) in sorted {
-                banned[a as usize][(step > 0) as usize] = true;
-            }
-        }
+    /// A refused walk went through a variable twice: bans one of the two passages, so that walks which pass once
+    /// remain possible (from the other side). All of its steps if there is none.
+    fn ban(mut walk: Vec<(u32, Step)>, banned: &mut BTreeSet<(u32, Step)>) {
+        walk.sort_unstable_by_key(|&(state, step)| (step, state));
+        let twice: Vec<_> = walk.windows(2).filter(|p| p[0].1 == p[1].1).map(|p| p[1]).collect();
+        banned.extend(if twice.is_empty() { walk } else { twice });
     }
 }
 
-/// The disjoint cycles of the parent links, each as its steps.
-fn cycles(parent: &[(u32, u32, i32)]) -> Vec<Vec<Step>> {
+/// The disjoint cycles of the parent links, each as its steps with the states that they leave.
+fn cycles(parent: &[(u32, u32, i32)]) -> Vec<Vec<(u32, Step)>> {
     let mut colour = vec![NONE; parent.len()];
     let mut found = Vec::new();
     for start in 0..parent.len() {
@@ -141,7 +124,7 @@ fn cycles(parent: &[(u32, u32, i32)]) -> Vec<Vec<Step>> {
             let mut t = s;
             loop {
                 let (p, a, step) = parent[t as usize];
-                steps.push((a, step));
+                steps.push((p, (a, step)));
                 t = p;
                 if t == s {
                     break;

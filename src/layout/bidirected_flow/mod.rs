@@ -16,6 +16,7 @@ mod improve;
 mod rows;
 
 use crate::numerics::NONE;
+use std::collections::VecDeque;
 
 /// Cost units per unit of weighted deviation: costs are integers, so that comparisons are exact.
 const COST_UNITS: f64 = 1e6;
@@ -66,6 +67,8 @@ pub struct BidirectedFlow {
     equations: usize,
     variables: Vec<Variable>,
     values: Vec<i32>,
+    /// Cost of lowering and of raising each variable by one.
+    marginals: Vec<[i64; 2]>,
     /// Σ ± n of each equation.
     excess: Vec<i32>,
     /// Occurrences (variable, which end) of equation e: `occurrences[first[e]..first[e + 1]]`; the last
@@ -78,6 +81,11 @@ pub struct BidirectedFlow {
     robbed: Vec<i64>,
     rows_of: Vec<Vec<u32>>,
     scratch: Scratch,
+    /// Labels of the states that the descent left behind: no allowed step lowers one, but for steps
+    /// out of the states in the queue.
+    labels: Vec<i64>,
+    queue: VecDeque<u32>,
+    queued: Vec<bool>,
 }
 
 /// Work arrays of the shortest-walk search, valid where `stamp` is current.
@@ -127,8 +135,9 @@ impl BidirectedFlow {
             done: vec![false; states],
         };
         let rows_of = vec![Vec::new(); variables.len()];
-        BidirectedFlow {
+        let mut flow = BidirectedFlow {
             equations,
+            marginals: vec![[0; 2]; variables.len()],
             variables,
             values,
             excess,
@@ -139,7 +148,14 @@ impl BidirectedFlow {
             robbed: Vec::new(),
             rows_of,
             scratch,
+            labels: vec![0; states],
+            queue: (0..states as u32).collect(),
+            queued: vec![true; states],
+        };
+        for a in 0..flow.variables.len() {
+            flow.set(a, flow.values[a]);
         }
+        flow
     }
 
     /// The current values.
@@ -171,11 +187,13 @@ impl BidirectedFlow {
 
     /// Adds a general row; the next [`solve`](Self::solve) goes on from the current point.
     pub fn add_row(&mut self, row: Row) {
-        for (old, sum) in self.rows.iter_mut().zip(&self.row_sums) {
+        for r in 0..self.rows.len() {
+            let old = &mut self.rows[r];
             let contains = row.variables.iter().all(|a| old.variables.contains(a));
             if contains && row.at_least >= old.at_least {
                 // Implied by the new row from now on; no longer in the way of any change.
-                old.at_least = 0.min(*sum);
+                old.at_least = 0;
+                self.touch_row(r);
             }
         }
         let index = self.rows.len() as u32;
@@ -206,8 +224,11 @@ impl BidirectedFlow {
 
     /// Cost of changing `variable` by `step`.
     fn marginal(&self, variable: usize, step: i32) -> i64 {
-        let n = self.values[variable];
-        self.cost_at(variable, n + step) - self.cost_at(variable, n)
+        self.marginals[variable][(step > 0) as usize]
+    }
+
+    fn marginals_at(&self, variable: usize, n: i32) -> [i64; 2] {
+        [-1, 1].map(|step| self.cost_at(variable, n + step) - self.cost_at(variable, n))
     }
 
     fn ground(&self) -> u32 {
@@ -247,15 +268,43 @@ impl BidirectedFlow {
     fn apply(&mut self, steps: &[Step]) {
         for &(a, step) in steps {
             let a = a as usize;
-            self.values[a] += step;
+            self.set(a, self.values[a] + step);
             for end in self.variables[a].ends {
                 if end.equation != NONE {
                     self.excess[end.equation as usize] += end.sign * step;
                 }
             }
-            for &r in &self.rows_of[a] {
+            for k in 0..self.rows_of[a].len() {
+                let r = self.rows_of[a][k];
                 self.row_sums[r as usize] += step;
+                self.touch_row(r as usize);
             }
+        }
+    }
+
+    /// Gives a variable a value, without regard to equations and rows.
+    fn set(&mut self, a: usize, n: i32) {
+        self.values[a] = n;
+        self.marginals[a] = self.marginals_at(a, n);
+        self.touch(a);
+    }
+
+    /// What leaves the states at a variable's ends is to be looked at again.
+    fn touch(&mut self, a: usize) {
+        for end in self.variables[a].ends {
+            for s in [self.state(end, 1), self.state(end, -1)] {
+                if !self.queued[s as usize] {
+                    self.queued[s as usize] = true;
+                    self.queue.push_back(s);
+                }
+            }
+        }
+    }
+
+    /// The same for all variables of a row.
+    fn touch_row(&mut self, r: usize) {
+        for k in 0..self.rows[r].variables.len() {
+            self.touch(self.rows[r].variables[k] as usize);
         }
     }
 

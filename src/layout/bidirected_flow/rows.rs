@@ -90,9 +90,11 @@ impl BidirectedFlow {
                 let start = self.point();
                 let mut best = (start.cost, start.clone());
                 self.rows[r].at_least = 0;
+                self.touch_row(r);
                 self.improve();
                 let free = self.point();
                 self.rows[r].at_least = row.at_least;
+                self.touch_row(r);
                 if free.cost < start.cost {
                     for &a in row.variables.iter().take(trials) {
                         trials -= 1;
@@ -132,7 +134,14 @@ impl BidirectedFlow {
     }
 
     fn restore(&mut self, point: &PointOf) {
-        self.values.clone_from(&point.values);
+        for a in 0..self.values.len() {
+            if self.values[a] != point.values[a] {
+                self.set(a, point.values[a]);
+                for k in 0..self.rows_of[a].len() {
+                    self.touch_row(self.rows_of[a][k] as usize);
+                }
+            }
+        }
         self.excess.clone_from(&point.excess);
         self.row_sums.clone_from(&point.rows);
     }
