@@ -120,6 +120,12 @@ impl Chain {
         i
     }
 
+    /// The two table entries around `s`, already wrapped; they lie on one segment.
+    pub(crate) fn around(&self, s: f64) -> (&Sample, &Sample) {
+        let i = self.interval(s);
+        (&self.samples[i], &self.samples[i + 1])
+    }
+
     /// Point and derivative d/ds (nearly of unit length) at arc length `s`.
     pub fn evaluate(&self, s: f64) -> (Point, Vector) {
         let s = self.wrap(s);

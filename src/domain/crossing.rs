@@ -9,7 +9,7 @@ use crate::domain::boundary_loop::BoundaryLoop;
 use crate::domain::box_tree::BoxTree;
 use crate::domain::piece::{distance_to_segment, pieces_of, segment_distance, Piece};
 use crate::error::{Error, Result};
-use crate::numerics::tolerances::{CUSP_ANGLE, CUSP_REACH, TOUCH};
+use crate::numerics::tolerances::{CUSP_ANGLE, CUSP_REACH, SAME_MOMENTS, TOUCH};
 use crate::numerics::{cross, Point};
 use std::f64::consts::PI;
 
@@ -101,6 +101,12 @@ impl Checker<'_> {
             if bottom || steps > MOST_STEPS || !worse.is_divisible() {
                 let loops = [&a, &b].map(|p| self.loops[p.loop_at as usize].index());
                 let segments = segments.map(|s| s.index());
+                if a.loop_at != b.loop_at && self.are_equal(a.loop_at, b.loop_at)? {
+                    let (loop_index, segment) =
+                        (loops[0].max(loops[1]), segments[usize::from(loops[1] > loops[0])]);
+                    let reason = "the same loop twice";
+                    return Err(Error::Degenerate { loop_index, segment, reason, at });
+                }
                 return Err(Error::Intersection { loops, segments, at });
             }
             let [p, q] = worse.halves(segment)?;
@@ -111,6 +117,18 @@ impl Checker<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Whether two loops that meet are the same curve: equal moments of area, whatever their start, direction
+    /// and segments.
+    fn are_equal(&self, a: u32, b: u32) -> Result<bool> {
+        let [a, b] = [a, b].map(|k| self.loops[k as usize]);
+        let origin = a.segments()[0].start()?;
+        let (p, q) = (a.moments(origin)?, b.moments(origin)?);
+        let size = p.area.abs().max(q.area.abs());
+        let same = |x: f64, y: f64, size: f64| (x.abs() - y.abs()).abs() <= SAME_MOMENTS * size;
+        let length = size.sqrt();
+        Ok(same(p.area, q.area, size) && same(p.x, q.x, size * length) && same(p.y, q.y, size * length))
     }
 
     /// The cusp at which the segments of two pieces join, if they do: pieces before and after it.

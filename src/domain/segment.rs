@@ -8,6 +8,9 @@ use crate::error::{Error, Result};
 use crate::numerics::{Point, Vector};
 use std::sync::Arc;
 
+/// Steps of the extrapolation to a tangent where the derivative vanishes.
+const LEVELS: i32 = 4;
+
 /// A curve segment of a loop.
 #[derive(Clone)]
 pub struct CurveSegment {
@@ -189,25 +192,37 @@ impl CurveSegment {
     /// Unit tangent in the direction of travel at t = 1 (`at_end`) or 0: the limit where the derivative
     /// vanishes or is infinite.
     pub fn end_tangent(&self, at_end: bool) -> Result<Vector> {
-        let size = self.size()?;
+        let size = if self.is_line() { 0.0 } else { self.size()? };
         let (end, inward) = if at_end { (1.0, -1.0) } else { (0.0, 1.0) };
         let d = self.derivative(end)?;
         let n = d.norm();
         if n.is_finite() && n > 1e-7 * size {
             return Ok(d / n);
         }
-        // Two directions near the end, extrapolated to it.
-        for k in [16, 13, 10, 7, 4] {
-            let h = 0.5f64.powi(k);
-            let a = self.derivative(end + inward * h)?;
-            let b = self.derivative(end + inward * 0.5 * h)?;
-            let (na, nb) = (a.norm(), b.norm());
-            if na.is_finite() && nb.is_finite() && na.min(nb) > 1e-10 * size {
-                let t = b / nb * 2.0 - a / na;
-                if t.norm() > 0.5 {
-                    return Ok(t.normalize());
-                }
+        // Directions to points near the end, at steps that halve, extrapolated to it: they are smooth in t
+        // whatever the order at which the derivative vanishes. The steps stop where rounding would show.
+        let tip = self.point(end)?;
+        let noise = f64::EPSILON * (tip.coords.norm() + size);
+        let least = (1e-8 * size).max(1e6 * noise);
+        let away = |k: i32| -> Result<Vector> { Ok(self.point(end + inward * 0.5f64.powi(k))? - tip) };
+        let mut last = LEVELS;
+        while last < 40 && away(last + 1)?.norm() >= least {
+            last += 1;
+        }
+        let mut row: Vec<Vector> = Vec::new();
+        for k in last - LEVELS + 1..=last {
+            let d = away(k)?;
+            let mut value = if d.norm() > 0.0 { d.normalize() } else { Vector::zeros() };
+            let mut factor = 1.0;
+            for old in &mut row {
+                factor *= 2.0;
+                let next = value + (value - *old) / (factor - 1.0);
+                *old = std::mem::replace(&mut value, next);
             }
+            row.push(value);
+        }
+        if let Some(t) = row.last().filter(|t| t.norm() > 0.5) {
+            return Ok(t.normalize() * inward);
         }
         let chord = self.end()? - self.start()?;
         let n = chord.norm();

@@ -4,11 +4,13 @@
 
 mod blocks;
 mod control;
+mod embedded;
 mod equation;
 mod expression;
 mod svg;
 mod svg_arc;
 
+pub use embedded::gingerbread_man;
 pub use equation::EquationCurve;
 pub use expression::Expression;
 

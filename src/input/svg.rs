@@ -10,11 +10,19 @@ use svgtypes::{PathParser, PathSegment};
 pub(crate) fn read(name: &str, text: &str, component: Option<usize>) -> Result<Model> {
     let options = roxmltree::ParsingOptions { allow_dtd: true, nodes_limit: 1 << 20 };
     let document = roxmltree::Document::parse_with_options(text, options).map_err(|e| {
-        let at = e.pos();
-        Error::Parse {
-            what: format!("not well-formed XML: {e}"),
-            line: at.row as usize,
-            column: at.col as usize,
+        use roxmltree::Error as E;
+        let what = format!("not well-formed XML: {e}");
+        match e {
+            // These do not tell where; the text ends too early.
+            E::UnclosedRootNode | E::UnexpectedEndOfStream => {
+                let line = text.lines().count().max(1);
+                let column = text.lines().last().map_or(0, |l| l.chars().count()) + 1;
+                Error::Parse { what, line, column }
+            }
+            other => {
+                let at = other.pos();
+                Error::Parse { what, line: at.row as usize, column: at.col as usize }
+            }
         }
     })?;
     let position = |offset: usize| {

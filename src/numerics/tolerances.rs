@@ -157,3 +157,9 @@ pub const CUSP_REACH: f64 = 1e-2;
 /// Distance along the tangent, relative to the domain's diagonal, at which a point of the exact curve
 /// is at the wanted arc length: a few roundings of a coordinate.
 pub const EXACT_FOOT: f64 = 1e-15;
+
+/// Arc length, relative to the canonical diagonal, to which a curve's parameter is found for a given arc length.
+pub const ARC_LENGTH_MATCH: f64 = 1e-13;
+
+/// Relative difference of area and of its moments below which two loops that meet are the same.
+pub const SAME_MOMENTS: f64 = 1e-6;
