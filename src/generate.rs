@@ -19,6 +19,10 @@ use watch::Watch;
 /// Base meshes tried, each finer than the one before, until blocks and elements come out right.
 const ATTEMPTS: usize = 5;
 
+/// Share of the tolerance that the stages aim at: they measure on the boundary's tables, at their
+/// quadrature points, and the last optimisation may use all of what they allow.
+const TOLERANCE_AIM: f64 = 0.97;
+
 /// Meshes `domain`. `stages` keeps what every stage made, also on failure.
 ///
 /// # Errors
@@ -77,14 +81,15 @@ fn steps_1_to_9(
     // Steps 1 to 3: base mesh, cross field, singularities; refined until the index theorem holds.
     let field = blocks::field(boundary, options, request, watch, stages)?;
 
+    // What the stages aim at; the final mesh is measured against the tolerance itself.
+    let aim = &BoundaryTolerance { value: TOLERANCE_AIM * tolerance.value, ..*tolerance };
+
     // Steps 4 to 6: separatrices, quad-dominant regions, repair.
-    let layout = blocks::layout(boundary, options, tolerance, &field, watch, stages)?;
+    let layout = blocks::layout(boundary, options, aim, &field, watch, stages)?;
 
     // Steps 7 to 9: subdivide and smooth until every boundary edge meets the tolerance.
-    let mesh = rounds::refine_and_smooth(boundary, options, tolerance, &layout, watch, stages)?;
+    let mesh = rounds::refine_and_smooth(boundary, options, aim, &layout, watch, stages)?;
 
     // The proof: curved elements of order N with positive Jacobians, on the exact curves.
-    watch.run(stages, Stage::Mesh, |_| {
-        HighOrderMesh::with_curve(&mesh, boundary, &TableCurve(boundary), tolerance)
-    })
+    watch.run(stages, Stage::Mesh, |_| HighOrderMesh::new(&mesh, boundary, domain, tolerance))
 }

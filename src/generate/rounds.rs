@@ -5,9 +5,9 @@ use crate::domain::Boundary;
 use crate::error::{Error, Result};
 use crate::layout::QuadLayout;
 use crate::mesh::{BoundaryError, BoundaryTolerance, QuadMesh, Vertex};
-use crate::options::Options;
+use crate::options::{Options, Subdivision};
 use crate::progress::Stage;
-use crate::refine;
+use crate::refine::{self, Limits};
 use crate::smooth::{Effort, Optimiser};
 use crate::stages::{Round, Stages};
 use std::collections::HashMap;
@@ -45,9 +45,14 @@ pub(super) fn refine_and_smooth(
         if !outcome.valid {
             let quality = optimiser.quality(&mesh);
             let inverted = |q: &usize| quality.elements[*q].jacobian_ratio <= 0.0;
-            let edges: Vec<u32> =
-                (0..mesh.quads.len()).filter(inverted).flat_map(|q| mesh.quad_edges[q]).collect();
-            mesh = watch.run(stages, Stage::Refine, |_| refine::divide_chords(&mesh, boundary, &edges))?;
+            let mut marked = vec![false; mesh.edges.len()];
+            for e in (0..mesh.quads.len()).filter(inverted).flat_map(|q| mesh.quad_edges[q]) {
+                marked[e as usize] = true;
+            }
+            mesh = watch.run(stages, Stage::Refine, |_| {
+                refine::split_chords(&mesh, boundary, &marked, options.order)
+                    .map_err(|(reason, at)| Error::Layout { reason, at: Some(at) })
+            })?;
             note(stages, &optimiser, &mesh, "split inverted");
         }
     }
@@ -60,6 +65,15 @@ pub(super) fn refine_and_smooth(
             .unwrap_or(0);
         let at = mesh.vertices[mesh.quads[worst][0] as usize].point;
         return Err(Error::InvalidElement { jacobian: quality.min_scaled_jacobian, at });
+    }
+    if options.subdivision == Subdivision::EqualError {
+        let limits = Limits::new(options.quality_floor);
+        mesh = watch.run(stages, Stage::Refine, |_| {
+            refine::coarsen(mesh, boundary, &optimiser, limits, &options.progress)
+        })?;
+        note(stages, &optimiser, &mesh, "coarsen");
+        watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut mesh, None, Effort::Full)))?;
+        note(stages, &optimiser, &mesh, "smooth");
     }
     Ok(mesh)
 }

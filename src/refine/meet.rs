@@ -1,6 +1,6 @@
 //! Boundary vertices moved along their chains, as little as the tolerance allows.
 
-use super::{divide_chords, place_equal_error};
+use super::{place_equal_error, split_chords, subdivide};
 use crate::domain::{Boundary, BoundaryPoint, Place};
 use crate::error::{Error, Result};
 use crate::mesh::{BoundaryError, QuadMesh};
@@ -12,7 +12,7 @@ const BLENDS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Moves the boundary vertices of every chain towards places of equal error until each edge keeps the
 /// tolerance, no farther than needed. Returns the boundary edges of chains that have too few.
-pub fn slide_to_tolerance(mesh: &mut QuadMesh, boundary: &Boundary, error: &BoundaryError) -> Vec<u32> {
+fn slide_to_tolerance(mesh: &mut QuadMesh, boundary: &Boundary, error: &BoundaryError) -> Vec<u32> {
     let mut short = Vec::new();
     // (chain, arc length of its start, edge), in order along the chains.
     let mut edges: Vec<(u32, f64, u32)> = Vec::new();
@@ -97,17 +97,21 @@ pub fn meet_tolerance(
     error: &BoundaryError,
     options: &Options,
 ) -> Result<QuadMesh> {
+    if options.subdivision == Subdivision::Halving {
+        return subdivide(mesh, boundary, error, options.max_elements);
+    }
     for _ in 0..ROUNDS {
-        let candidates = match options.subdivision {
-            Subdivision::EqualError => slide_to_tolerance(&mut mesh, boundary, error),
-            Subdivision::Halving => (0..mesh.edges.len() as u32).collect(),
-        };
-        let ratio = |e: u32| mesh.edges[e as usize].span.map_or(0.0, |span| error.ratio(boundary, span));
-        let failing: Vec<u32> = candidates.into_iter().filter(|&e| ratio(e) > 1.0).collect();
-        if failing.is_empty() {
+        let short = slide_to_tolerance(&mut mesh, boundary, error);
+        let mut failing = vec![false; mesh.edges.len()];
+        for e in short {
+            let ratio = mesh.edges[e as usize].span.map_or(0.0, |span| error.ratio(boundary, span));
+            failing[e as usize] = ratio > 1.0;
+        }
+        if !failing.contains(&true) {
             return Ok(mesh);
         }
-        mesh = divide_chords(&mesh, boundary, &failing)?;
+        mesh = split_chords(&mesh, boundary, &failing, options.order)
+            .map_err(|(reason, at)| Error::Layout { reason, at: Some(at) })?;
         if mesh.quads.len() > options.max_elements {
             break;
         }

@@ -7,9 +7,6 @@
 //! [`place_equal_error`] puts the vertices of any larger number where all edges have the same
 //! error (de Boor's equidistribution, *Good approximation by splines with variable knots*, 1973).
 //! [`place_by_halving`] is the paper's own rule (Algorithm 1), [`subdivide`] the same on a mesh.
-
-mod divide;
-//! [`place_by_halving`] is the paper's own rule (Algorithm 1).
 //!
 //! [`coarsen`] takes a valid mesh that is finer than it need be and removes chords and diagonals,
 //! re-optimising round each, while the tolerance and the quality hold.
@@ -21,17 +18,15 @@ mod halving;
 mod meet;
 mod pieces;
 mod placement;
-mod split;
-mod subdivide;
-
-pub use divide::divide_chords;
 mod respace;
+mod split;
 mod stars;
+mod subdivide;
 mod trial;
 
 pub use coarsen::coarsen;
 pub use halving::place_by_halving;
-pub use meet::{meet_tolerance, slide_to_tolerance};
+pub use meet::meet_tolerance;
 pub use pieces::least_pieces;
 pub use placement::{place_equal_error, Placement};
 pub use split::split_chords;

@@ -724,7 +724,9 @@ mod tests {
             .collect();
         let chain = Chain { loop_index: 0, name: 0, ends: None, length: s, samples, breaks: vec![] };
         let boundary = Boundary {
-            frame: Frame::identity(), diagonal: 1.0, loop_sources: vec![],
+            frame: Frame::identity(),
+            diagonal: 1.0,
+            loop_sources: vec![],
             names: vec!["outer".into()],
             chains: vec![chain],
             junctions: vec![],
