@@ -91,6 +91,8 @@ fn boundary() -> Boundary {
         junctions: vec![],
         loops: vec![vec![0]],
         area: PI * RADIUS * RADIUS,
+        loop_sources: vec![0],
+        diagonal: 1.0,
     }
 }
 
@@ -196,8 +198,9 @@ pub fn stages() -> Stages {
         .iter()
         .map(|arc| Separatrix {
             from: TraceEnd::Singularity { singularity: arc.nodes[0], port: 0 },
-            to: TraceEnd::Border { from: 0, share: 0.5 },
+            to: TraceEnd::Separatrix { on: 0 },
             points: arc.points.clone(),
+            stops: vec![],
         })
         .collect();
     let mut quads = vec![[0, 1, 2, 3]];

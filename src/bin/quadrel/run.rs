@@ -15,6 +15,10 @@ use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+/// Order and tolerance of the embedded domain: those of the paper's figure.
+const EMBEDDED_ORDER: usize = 5;
+const EMBEDDED_TOLERANCE: f64 = 1e-2;
+
 /// Why a run did not end with a mesh: by the fault of the domain, or of the arguments and files.
 struct Failure {
     error: Error,
@@ -68,7 +72,7 @@ fn make(arguments: &MeshArguments, stages: &mut Stages) -> std::result::Result<M
     options.check()?;
     let model = match &arguments.domain {
         Some(path) => input::read(path, arguments.component),
-        None => Ok(input::gingerbread_man()),
+        None => input::gingerbread_man(),
     }?;
     complete(&mut options, arguments, &model);
     let title = report::title(&model.name, &options);
@@ -192,10 +196,13 @@ fn options(arguments: &MeshArguments) -> Result<Options> {
 
 /// Adds what the arguments left open and the file says.
 fn complete(options: &mut Options, arguments: &MeshArguments, model: &Model) {
-    if let (None, Some(order)) = (arguments.order, model.order) {
+    let embedded = arguments.domain.is_none();
+    let order = if embedded { Some(EMBEDDED_ORDER) } else { model.order };
+    let tolerance = if embedded { Some(EMBEDDED_TOLERANCE) } else { model.tolerance };
+    if let (None, Some(order)) = (arguments.order, order) {
         options.order = order;
     }
-    if let (None, None, Some(e)) = (arguments.tolerance, arguments.relative, model.tolerance) {
+    if let (None, None, Some(e)) = (arguments.tolerance, arguments.relative, tolerance) {
         options.tolerance = Tolerance::Absolute(e);
     }
 }

@@ -14,6 +14,9 @@ const NARROWEST: f64 = 400.0;
 const MARGIN: f64 = 14.0;
 /// Room for the line of text below.
 const CAPTION: f64 = 28.0;
+/// Size of text, and a character's width in sizes, with some margin.
+const FONT: f64 = 16.0;
+const CHARACTER: f64 = 0.56;
 /// Deviation in SVG units that the eye does not see.
 const TOLERANCE: f64 = 0.12;
 
@@ -148,11 +151,13 @@ impl Canvas {
         let (width, height) = self.size();
         let mut body = self.body;
         if !self.caption.is_empty() {
+            let font = FONT.min(width / (CHARACTER * self.caption.chars().count() as f64));
             let _ = writeln!(
                 body,
-                "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"#333\">{}</text>",
+                "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-size=\"{}\" fill=\"#333\">{}</text>",
                 number(0.5 * width),
                 number(height - 10.0),
+                number(font),
                 escape(&self.caption)
             );
         }
@@ -200,7 +205,7 @@ fn document(width: f64, height: f64, content: &str) -> String {
     let (width, height) = (number(width), number(height));
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"16\" \
+         viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" \
          stroke-linejoin=\"round\" stroke-linecap=\"round\">\n\
          <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{content}</svg>\n"
     )

@@ -34,18 +34,16 @@ pub fn draw(mesh: &HighOrderMesh, width: f64) -> Canvas {
             curves.append(e, true, true, path);
         }
     });
-    let radius = (0.13 * typical).clamp(1.6, 7.0);
-    let irregular = irregular_vertices(mesh);
-    for &(v, valence) in &irregular {
+    let radius = (0.13 * typical).clamp(2.4, 7.0);
+    for (v, valence) in irregular_vertices(mesh) {
         let corners = valence.max(3);
         canvas.mark(mesh.vertices[v], Mark::Polygon(corners), radius, valence_color(valence));
     }
     let worst = mesh.scaled_jacobian.iter().copied().fold(f64::INFINITY, f64::min);
     canvas.caption(format!(
-        "{} elements of order {}, {} irregular, scaled Jacobian ≥ {worst:.2}",
+        "mesh: {} elements of order {}, scaled Jacobian ≥ {worst:.2}",
         mesh.elements.len(),
-        mesh.order,
-        irregular.len()
+        mesh.order
     ));
     canvas
 }

@@ -6,6 +6,7 @@ use super::{colouring, Picture};
 use crate::domain::{Boundary, Frame, Span};
 use crate::numerics::{Point, Vector, NONE};
 use crate::stages::Stages;
+use std::collections::BTreeMap;
 
 /// Distance of crosses in SVG units; between them, triangles go without.
 const CROSS_SPACING: f64 = 15.0;
@@ -122,19 +123,23 @@ impl Drawing<'_> {
         let (Some(base), Some(field)) = (&stages.triangulation, &stages.cross_field) else { return };
         let cell = CROSS_SPACING * self.canvas.unit();
         let arm = 0.42 * cell;
-        let mut taken = std::collections::BTreeSet::new();
+        // In each cell of a grid the cross of the triangle nearest to its middle.
+        let mut chosen: BTreeMap<(i64, i64), (f64, Point, f64)> = BTreeMap::new();
+        for corners in &base.triangles {
+            let sum = |value: &dyn Fn(usize) -> f64| corners.iter().map(|v| value(*v as usize)).sum::<f64>();
+            let coordinate = |c: usize| sum(&|v| base.vertices[v].point[c]) / 3.0;
+            let at = frame.to_caller(Point::new(coordinate(0), coordinate(1)));
+            let u = [0, 1].map(|c| sum(&|v| field.u[v][c]));
+            let angle = 0.25 * u[1].atan2(u[0]) + frame.axis.y.atan2(frame.axis.x);
+            let seat = [at.x, at.y].map(|x| (x / cell).floor());
+            let off = (at.x / cell - seat[0] - 0.5).hypot(at.y / cell - seat[1] - 0.5);
+            let place = chosen.entry((seat[0] as i64, seat[1] as i64)).or_insert((off, at, angle));
+            if off < place.0 {
+                *place = (off, at, angle);
+            }
+        }
         self.canvas.lines(Stroke { color: CROSS, width: 1.0 }, |path| {
-            for corners in &base.triangles {
-                let sum =
-                    |value: &dyn Fn(usize) -> f64| corners.iter().map(|v| value(*v as usize)).sum::<f64>();
-                let coordinate = |c: usize| sum(&|v| base.vertices[v].point[c]) / 3.0;
-                let at = frame.to_caller(Point::new(coordinate(0), coordinate(1)));
-                let seat = ((at.x / cell).floor() as i64, (at.y / cell).floor() as i64);
-                if !taken.insert(seat) {
-                    continue;
-                }
-                let u = [0, 1].map(|c| sum(&|v| field.u[v][c]));
-                let angle = 0.25 * u[1].atan2(u[0]) + frame.axis.y.atan2(frame.axis.x);
+            for (_, at, angle) in chosen.into_values() {
                 let a = Vector::new(angle.cos(), angle.sin()) * arm;
                 let b = Vector::new(-a.y, a.x);
                 path.polyline([at - a, at + a]);
