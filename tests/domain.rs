@@ -176,6 +176,7 @@ fn slit_end_has_two_pi_and_reentrant_corner_more_than_pi() {
     b.add_bezier(&[[2.0, -1.0], [1.0, 0.0], [0.0, 0.0]], "").unwrap();
     b.end_loop().unwrap();
     let d = b.build().unwrap();
+    d.check().unwrap();
     let angles: Vec<f64> = boundary(&d).junctions.iter().map(|j| j.angle).collect();
     assert_eq!(angles.iter().filter(|a| (**a - 2.0 * PI).abs() < 1e-9).count(), 1, "{angles:?}");
     let l = Domain::polygon(&[[0., 0.], [2., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 2.]], &[]).unwrap();
@@ -210,6 +211,36 @@ fn tolerances_are_converted_to_the_canonical_frame() {
         let absolute = b.canonical_tolerance(Tolerance::Absolute(1e-3 * power), norm);
         assert!((relative / absolute - 1.0).abs() < 1e-12);
     }
+}
+
+#[test]
+fn corners_inside_a_callback_are_junctions() {
+    // A whole square as one curve, and one with a bend of 0.01 rad inside a side.
+    let square = |t: f64| {
+        let u = 4.0 * (t % 1.0);
+        let side = [u, 1.0, 3.0 - u, 0.0];
+        let k = (u as usize).min(3);
+        Ok([side[k].clamp(0.0, 1.0), [0.0, u - 1.0, 1.0, 4.0 - u][k]])
+    };
+    let d = outer(|b| {
+        b.add_callback(Box::new(square), None, "").unwrap();
+    });
+    let b = boundary(&d);
+    assert!((d.area().unwrap() - 1.0).abs() < 1e-9);
+    assert_eq!(b.junctions.len(), 4);
+    assert!(b.junctions.iter().all(|j| (j.angle - PI / 2.0).abs() < 1e-7));
+    assert!(b.chains.iter().all(|c| (c.length * b.frame.scale - 1.0).abs() < 1e-9));
+    let bent = outer(|b| {
+        b.add_callback(Box::new(|t| Ok([3.0 * t, -0.005 + 0.005 * (3.0 * t - 1.0).abs()])), None, "")
+            .unwrap();
+        b.add_line([3.0, 0.005], [0.0, 2.0], "").unwrap();
+        b.add_line([0.0, 2.0], [0.0, 0.0], "").unwrap();
+    });
+    let b = boundary(&bent);
+    let bend = b.junctions.iter().find(|j| (j.angle - PI).abs() < 0.1).unwrap();
+    assert!((PI - bend.angle - 0.01).abs() < 1e-4, "{}", bend.angle);
+    let x = b.frame.to_caller(bend.point).x;
+    assert!((x - 1.0).abs() < 1e-9, "{x}");
 }
 
 /// A transformation of the test domain and how its loops are given.
@@ -346,5 +377,56 @@ fn canonical_diagonal_is_one_and_centroid_the_origin() {
             high = Point::new(high.x.max(p.x), high.y.max(p.y));
         }
         assert!(((high - low).norm() - 1.0).abs() < 1e-3);
+    }
+}
+
+/// A plate with holes in it, turned by `angle`, its corners given from number `start` on.
+fn plate(corners: &[[f64; 2]], holes: &[([f64; 2], f64)], angle: f64, start: usize) -> Boundary {
+    let (sin, cos) = if angle == 0.0 { (0.0, 1.0) } else { angle.sin_cos() };
+    let at = |p: [f64; 2]| [p[0] * cos - p[1] * sin, p[0] * sin + p[1] * cos];
+    let n = corners.len();
+    let mut b = Domain::builder();
+    let turned: Vec<_> = (0..n).map(|i| at(corners[(i + start) % n])).collect();
+    b.add_polygon(LoopKind::Outer, &turned).unwrap();
+    for &(center, radius) in holes {
+        b.begin_loop(LoopKind::Hole, "").unwrap();
+        b.add_arc(at(center), radius, angle, angle + 2.0 * PI, "").unwrap();
+        b.end_loop().unwrap();
+    }
+    let domain = b.build().unwrap();
+    domain.check().unwrap();
+    boundary(&domain)
+}
+
+#[test]
+fn symmetric_domains_have_one_pose() {
+    let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let isosceles = [[-1.0, 0.0], [1.0, 0.0], [0.0, 0.5]];
+    let rectangle = [[-2.0, -1.0], [2.0, -1.0], [2.0, 1.0], [-2.0, 1.0]];
+    let grid: Vec<_> =
+        (0..9).map(|k| ([(k % 3) as f64 * 0.5 - 0.5, (k / 3) as f64 * 0.5 - 0.5], 0.1)).collect();
+    let pair = [([0.5, 0.0], 0.2), ([-0.5, 0.0], 0.2)];
+    for (corners, holes) in [
+        (&square[..], &grid[..]),
+        (&square[..], &pair[..]),
+        (&square[..], &[]),
+        (&isosceles[..], &[]),
+        (&rectangle[..], &pair[..]),
+    ] {
+        let reference = plate(corners, holes, 0.0, 0);
+        for (angle, start) in [(0.3, 0), (1.9, 1), (3.7, 2), (PI, 0)] {
+            let b = plate(corners, holes, angle, start);
+            for (x, y) in b.junctions.iter().zip(&reference.junctions) {
+                assert!((x.point - y.point).norm() < 1e-9, "{angle}: {} {}", x.point, y.point);
+            }
+            // The seams of the holes are the caller's, so only the circles can be compared.
+            let centers = |b: &Boundary| -> Vec<Point> {
+                let closed = b.chains.iter().filter(|c| c.ends.is_none());
+                closed.map(|c| nalgebra::center(&c.point(0.0), &c.point(0.5 * c.length))).collect()
+            };
+            for (x, y) in centers(&b).iter().zip(&centers(&reference)) {
+                assert!((x - y).norm() < 1e-9, "{angle}: {x} {y}");
+            }
+        }
     }
 }

@@ -70,8 +70,7 @@ fn boundary_edges_name_the_callers_segment_and_parameter() {
         for (v, t) in edge.vertices.iter().zip(edge.parameters) {
             let [x, y] = callers_point(t);
             let p = fine.vertices[*v as usize];
-            // The parameter is as exact as the table's linear interpolation of it.
-            assert!((p.x - x).hypot(p.y - y) < 1e-4, "{p} is not at {t}");
+            assert!((p.x - x).hypot(p.y - y) < 1e-12, "{p} is not at {t}");
             checked += 1;
         }
         assert!(edge.parameters[0] > edge.parameters[1], "the caller walks the other way");

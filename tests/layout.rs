@@ -16,6 +16,9 @@ fn points(p: &[(f64, f64)]) -> Vec<Point> {
     p.iter().map(|&(x, y)| Point::new(x, y)).collect()
 }
 
+/// A region as drawn: the points along each side.
+type Sides = Vec<Vec<usize>>;
+
 /// Conforms and checks what must hold for every result: a valid layout, all lengths used, valences as counted.
 fn conformed(layout: &BlockLayout, boundary: &Boundary, targets: &Targets, name: &str) -> Conforming {
     layout.check(boundary).unwrap();
@@ -41,7 +44,7 @@ fn conformed(layout: &BlockLayout, boundary: &Boundary, targets: &Targets, name:
 
 /// A 3 × 3 arrangement of unit-third squares in the unit square whose middle square is left to the test: points
 /// 4 r + c at (c / 3, r / 3), eight regions around the middle.
-fn frame() -> (Boundary, Vec<(f64, f64)>, Vec<Vec<Vec<usize>>>) {
+fn frame() -> (Boundary, Vec<(f64, f64)>, Vec<Sides>) {
     let boundary = polygons(&[points(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])]);
     let grid: Vec<(f64, f64)> = (0..16).map(|i| ((i % 4) as f64 / 3.0, (i / 4) as f64 / 3.0)).collect();
     let mut regions = Vec::new();
@@ -297,6 +300,31 @@ fn an_annulus_cut_once_keeps_its_loops() {
         let result = conformed(&layout, &boundary, &Targets::new(&size, &[]), "annulus");
         assert!(valences(&result.layout).keys().all(|&v| v == 4));
         assert!(result.layout.quads.len() >= 4);
+    }
+}
+
+#[test]
+fn regions_of_one_and_two_sides_are_halved() {
+    let arc = |from: f64, to: f64| -> Vec<Point> {
+        let point = |i: usize| {
+            let a = from + (to - from) * i as f64 / 32.0;
+            Point::new(0.5 + 0.5 * a.cos(), 0.5 + 0.5 * a.sin())
+        };
+        (0..=32).map(point).collect()
+    };
+    let (half, whole) = (std::f64::consts::PI, std::f64::consts::TAU);
+    let mut lens = nowhere();
+    add_loop(&mut lens, &[arc(0.0, half), arc(half, whole)]);
+    let two = draw(&lens, &[(1.0, 0.5), (0.0, 0.5), (0.5, 1.0)], &[vec![vec![0, 2], vec![1]]], &[]);
+    let mut drop = nowhere();
+    add_loop(&mut drop, &[arc(0.0, whole)]);
+    let one = draw(&drop, &[(1.0, 0.5)], &[vec![vec![0]]], &[]);
+    for (boundary, layout, name) in [(lens, two, "lens"), (drop, one, "drop")] {
+        let size = uniform(0.3);
+        let result = conformed(&layout, &boundary, &Targets::new(&size, &[]), name);
+        assert_eq!(result.fallback, 2);
+        assert!(result.repaired.regions.iter().all(|r| (3..=4).contains(&r.sides.len())));
+        assert!(valences(&result.layout)[&3] >= 2);
     }
 }
 

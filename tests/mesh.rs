@@ -188,19 +188,6 @@ fn proof_is_the_same_for_a_moved_element() {
     }
 }
 
-#[test]
-#[ignore = "a measurement, not a check"]
-fn proof_speed() {
-    for n in [3, 5, 8, 16, 32] {
-        let mut g = Generator(3);
-        let mut proof = JacobianProof::new(n);
-        let elements: Vec<_> = (0..200).map(|_| random_element(&mut g, n, 0.1)).collect();
-        let start = std::time::Instant::now();
-        let proven = elements.iter().filter(|e| matches!(proof.examine(e), Verdict::Proven(_))).count();
-        println!("order {n}: {proven} of 200, {:.2} µs each", start.elapsed().as_secs_f64() * 1e6 / 200.0);
-    }
-}
-
 fn unit_circle_tolerance(b: &Boundary, order: usize, value: f64) -> BoundaryTolerance {
     let options = Options { order, tolerance: Tolerance::Absolute(value), ..Options::default() };
     BoundaryTolerance::new(&options, b)

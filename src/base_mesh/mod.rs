@@ -17,6 +17,9 @@ mod element_size;
 mod locate;
 mod sampling;
 mod size_field;
+mod tips;
+
+pub use tips::{doubtful_corners, doubtful_reach};
 
 pub use element_size::ElementSize;
 

@@ -1,6 +1,7 @@
 //! Chords of the boundary: how finely each chain is cut.
 
 use super::size_field::SizeField;
+use super::tips::doubtful_reach;
 use crate::domain::{Boundary, BoundaryPoint, Chain, Place};
 use crate::numerics::tolerances::{
     CHORD_RATIO, CHORD_TURN, CORNER_CHORD_TURN, SHARP_TIP, SNAP_GRID, SNAP_LEAST_CHORD,
@@ -67,7 +68,7 @@ impl<'a> Sampling<'a> {
         }
         sampling.halve_while(|s, chord| {
             let middle = s.chain(chord).point(0.5 * (chord.start + chord.end));
-            chord.turn > s.most_turn(chord) || chord.length() > sizes.at(middle)
+            chord.turn > s.most_turn(chord) || chord.length() > sizes.at(middle).min(s.most_length(chord))
         });
         sampling.balance();
         sampling
@@ -108,17 +109,24 @@ impl<'a> Sampling<'a> {
         turning[i - 1] + share * (turning[i] - turning[i - 1])
     }
 
+    /// The junctions that `chord` touches.
+    fn touched(&self, chord: &Chord) -> impl Iterator<Item = u32> {
+        let chain = self.chain(chord);
+        let at_ends = [chord.start <= 0.0, chord.end >= chain.length];
+        chain.ends.into_iter().flatten().zip(at_ends).filter(|&(_, touches)| touches).map(|(j, _)| j)
+    }
+
     /// The most that `chord` may turn: less beside a sharp corner.
     fn most_turn(&self, chord: &Chord) -> f64 {
-        let chain = self.chain(chord);
-        let Some(ends) = chain.ends else { return CHORD_TURN };
-        let mut most = CHORD_TURN;
-        for (end, touches) in ends.iter().zip([chord.start <= 0.0, chord.end >= chain.length]) {
-            if touches {
-                most = most.min(CORNER_CHORD_TURN * self.boundary.junctions[*end as usize].angle);
-            }
-        }
-        most
+        let at_corner = |j: u32| CORNER_CHORD_TURN * self.boundary.junctions[j as usize].angle;
+        self.touched(chord).map(at_corner).fold(CHORD_TURN, f64::min)
+    }
+
+    /// The most that `chord` may measure for the sake of the corners it touches: their reach is to
+    /// hold a few vertices.
+    fn most_length(&self, chord: &Chord) -> f64 {
+        let at_corner = |j: u32| doubtful_reach(self.boundary, j).map(|reach| 0.4 * reach);
+        self.touched(chord).filter_map(at_corner).fold(f64::INFINITY, f64::min)
     }
 
     /// Halves every chord for which `too_large` holds, again and again.

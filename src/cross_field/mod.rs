@@ -20,7 +20,6 @@ mod tips;
 mod turning;
 
 pub use border::quads_at_corner;
-pub use tips::doubtful_corners;
 
 use crate::base_mesh::Triangulation;
 use crate::domain::Boundary;

@@ -3,46 +3,10 @@
 //! Between the walls of a corner of exactly 45° u runs from (1, 0) to (−1, 0): straight through 0, unless
 //! something says on which side. So u is held on the corner's own solution near it.
 
-use super::border::{quads_at_corner, Border};
-use crate::base_mesh::Triangulation;
+use super::border::Border;
+use crate::base_mesh::{doubtful_reach, Triangulation};
 use crate::domain::{Boundary, Place};
-use crate::numerics::tolerances::{TIP_RATE, TIP_SHARE, TIP_TURN};
-use crate::numerics::{cross, Point, NONE};
-use std::f64::consts::FRAC_PI_2;
-
-/// Whether the cross turns so fast across a corner that the sense of its turn is in doubt.
-pub fn is_doubtful(angle: f64, quads: u8) -> bool {
-    (1.0 - f64::from(quads) * FRAC_PI_2 / angle).abs() > TIP_RATE
-}
-
-/// How far from junction `j` the walls are straight enough for the corner's own solution.
-pub fn reach(boundary: &Boundary, j: u32) -> f64 {
-    let junction = &boundary.junctions[j as usize];
-    let along = |chain: u32, forward: bool| {
-        let chain = &boundary.chains[chain as usize];
-        let from = chain.tangent(if forward { 0.0 } else { chain.length });
-        let mut reach = TIP_SHARE * chain.length;
-        // Halved until the wall turns little; curvature is finite, so few halvings do.
-        for _ in 0..24 {
-            let tangent = chain.tangent(if forward { reach } else { chain.length - reach });
-            if cross(from, tangent).atan2(from.dot(&tangent)).abs() < TIP_TURN {
-                break;
-            }
-            reach *= 0.5;
-        }
-        reach
-    };
-    along(junction.chain_out, true).min(along(junction.chain_in, false))
-}
-
-/// The doubtful corners of the boundary, each with its reach.
-pub fn doubtful_corners(boundary: &Boundary) -> Vec<(Point, f64)> {
-    (0u32..)
-        .zip(&boundary.junctions)
-        .filter(|(_, junction)| is_doubtful(junction.angle, quads_at_corner(junction.angle)))
-        .map(|(j, junction)| (junction.point, reach(boundary, j)))
-        .collect()
-}
+use crate::numerics::{cross, NONE};
 
 /// What a corner's own solution says of a vertex near it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,12 +26,10 @@ pub(super) fn held(mesh: &Triangulation, boundary: &Boundary, border: &Border) -
         for i in (0..3).filter(|&i| mesh.neighbors[t][i] == NONE) {
             let tip = corners[i];
             let Place::Junction(j) = mesh.vertices[tip as usize].place else { continue };
-            if is_doubtful(border.angle[tip as usize], border.quads[tip as usize]) {
-                let found = vertices_near(mesh, boundary, t, j, tip, &mut seen);
-                for v in found {
-                    let phi = polar_angle(mesh, boundary, border, (t, i), j, v);
-                    held[v as usize] = Some(Held { tip, cross: border.cross_at(tip, phi) });
-                }
+            let Some(reach) = doubtful_reach(boundary, j) else { continue };
+            for v in vertices_near(mesh, boundary, (t, j, tip), reach, &mut seen) {
+                let phi = polar_angle(mesh, boundary, border, (t, i), j, v);
+                held[v as usize] = Some(Held { tip, cross: border.cross_at(tip, phi) });
             }
         }
     }
@@ -103,15 +65,13 @@ fn polar_angle(
 fn vertices_near(
     mesh: &Triangulation,
     boundary: &Boundary,
-    t: usize,
-    j: u32,
-    tip: u32,
+    (t, j, tip): (usize, u32, u32),
+    reach: f64,
     seen: &mut [u32],
 ) -> Vec<u32> {
     let junction = &boundary.junctions[j as usize];
     // A chain that is both walls of its corner has its middle beyond the reach.
     let walls = [junction.chain_in, junction.chain_out];
-    let reach = reach(boundary, j);
     let at = mesh.vertices[tip as usize].point;
     let distance = |v: u32| (mesh.vertices[v as usize].point - at).norm();
     let mut front = vec![t];

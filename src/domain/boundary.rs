@@ -174,12 +174,6 @@ impl Chain {
         a.curvature + (b.curvature - a.curvature) * (s - a.s) / (b.s - a.s)
     }
 
-    /// The table's entries before and after arc length `s`, already wrapped.
-    pub fn bracket(&self, s: f64) -> (Sample, Sample) {
-        let i = self.interval(s);
-        (self.samples[i], self.samples[i + 1])
-    }
-
     /// The segment of the loop and its parameter at arc length `s`.
     pub fn segment_parameter(&self, s: f64) -> (u32, f64) {
         let s = self.wrap(s);

@@ -51,7 +51,7 @@ impl BlockLayout {
                     node.kind == NodeKind::Junction && (j as usize) < boundary.junctions.len()
                 }
             };
-            if !fits || !(node.point.x.is_finite() && node.point.y.is_finite()) {
+            if !(fits && node.point.x.is_finite() && node.point.y.is_finite()) {
                 return Err((format!("node {i}: its kind and place do not agree"), node.point));
             }
         }
@@ -180,8 +180,8 @@ impl QuadLayout {
         Ok(())
     }
 
-    /// Vertices whose quads form more than one fan, or through which the border passes twice.
-    pub(super) fn pinched(&self) -> Vec<u32> {
+    /// Vertices whose quads form more than one fan, or inside fewer than 3 or more than 6.
+    pub(super) fn spoiled(&self) -> Vec<u32> {
         let mut directed = BTreeMap::new();
         let mut valence = vec![0u32; self.vertices.len()];
         for (q, quad) in self.quads.iter().enumerate() {
@@ -190,7 +190,12 @@ impl QuadLayout {
                 valence[quad[i] as usize] += 1;
             }
         }
-        (0..self.vertices.len() as u32).filter(|&v| self.fan(v, &directed) != valence[v as usize]).collect()
+        let spoiled = |&v: &u32| {
+            let n = valence[v as usize];
+            let inside = self.vertices[v as usize].place == Place::Interior;
+            self.fan(v, &directed) != n || (inside && !(3..=6).contains(&n))
+        };
+        (0..self.vertices.len() as u32).filter(spoiled).collect()
     }
 
     /// Number of quads in the fan of one quad at `v`, walked counter-clockwise from the border if there is one.

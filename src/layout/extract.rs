@@ -51,7 +51,7 @@ pub fn extract(
         return Ok(Extraction::Demands(demands));
     }
     let (result, origin) = work.build();
-    let demands = work.pinched_vertices(&result, &origin);
+    let demands = work.spoiled_vertices(&result, &origin);
     if !demands.is_empty() {
         return Ok(Extraction::Demands(demands));
     }
@@ -335,14 +335,19 @@ impl Work<'_> {
         LayoutVertex { point, place: Place::Interior }
     }
 
-    /// Vertices whose quads form more than one fan: what merged in them must part.
-    fn pinched_vertices(&self, result: &QuadLayout, origin: &[Vec<u32>]) -> Vec<Demand> {
+    /// Vertices whose quads form more than one fan, or are too few or too many: what merged in them must part,
+    /// singularities first.
+    fn spoiled_vertices(&self, result: &QuadLayout, origin: &[Vec<u32>]) -> Vec<Demand> {
+        let regular = |&m: &u32| {
+            let node = self.layout.nodes.get(m as usize);
+            !node.is_some_and(|n| matches!(n.kind, NodeKind::Singularity(_)))
+        };
         let mut demands = Vec::new();
-        for v in result.pinched() {
-            let members = &origin[v as usize];
-            let why = "quads would meet in one point only";
-            let from = members[0];
-            demands.extend(members[1..].iter().rev().find_map(|&m| self.demand(from, m, why)));
+        for v in result.spoiled() {
+            let mut members = origin[v as usize].clone();
+            members.sort_by_key(regular);
+            let why = "a vertex would have no single fan of 3 to 6 quads";
+            demands.extend(members[1..].iter().find_map(|&m| self.demand(members[0], m, why)));
         }
         demands
     }

@@ -99,7 +99,7 @@ impl UnitSide {
         self.arcs.len()
     }
 
-    fn from_end(&self, k: usize) -> u32 {
+    fn back(&self, k: usize) -> u32 {
         self.ids[self.ids.len() - 1 - k]
     }
 }
@@ -197,18 +197,18 @@ impl Grids {
             let reason = self.identification.reason(arcs);
             let (one, other) = (&sides[1 - flat], &sides[3 - flat]);
             for (k, &id) in one.ids.iter().enumerate() {
-                self.identification.unite(id, other.from_end(k), reason);
+                self.identification.unite(id, other.back(k), reason);
             }
             return true;
         }
         let mut grid = Grid::new(r, &sides[0], w, &sides[1].arcs, h);
         for i in 0..=w {
             grid.set(i, 0, sides[0].ids[i]);
-            grid.set(i, h, sides[2].from_end(i));
+            grid.set(i, h, sides[2].back(i));
         }
         for j in 0..=h {
             grid.set(w, j, sides[1].ids[j]);
-            grid.set(0, j, sides[3].from_end(j));
+            grid.set(0, j, sides[3].back(j));
         }
         number_inside(&mut grid, next);
         self.grids.push(grid);
@@ -237,13 +237,13 @@ impl Grids {
             let (w, h) = (r_of(before), r_of(i));
             let across: Vec<u32> = sides[before].arcs.iter().rev().take(h).copied().collect();
             let mut grid = Grid::new(r, &sides[i], w, &across, h);
-            for u in 0..=w {
+            for (u, &id) in lines[before].iter().enumerate() {
                 grid.set(u, 0, sides[i].ids[u]);
-                grid.set(u, h, lines[before][u]);
+                grid.set(u, h, id);
             }
-            for v in 0..=h {
-                grid.set(0, v, sides[before].from_end(v));
-                grid.set(w, v, lines[i][v]);
+            for (v, &id) in lines[i].iter().enumerate() {
+                grid.set(0, v, sides[before].back(v));
+                grid.set(w, v, id);
             }
             number_inside(&mut grid, next);
             self.grids.push(grid);

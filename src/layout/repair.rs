@@ -12,6 +12,7 @@ use super::polyline::{self, Measured};
 use super::targets::{PentagonRule, Targets};
 use super::BlockLayout;
 use crate::domain::Boundary;
+use crate::numerics::NONE;
 
 /// Which rules were needed: grows with their strength.
 pub const NOTHING: u8 = 0;
@@ -134,11 +135,32 @@ impl BlockLayout {
         }
     }
 
-    /// Relaxes the four-sided region among `regions` and that corner of it where a 3-5 pair costs
-    /// least. `false`: there is none.
+    /// `regions`, and the regions around them until a four-sided one is among them.
+    fn with_four_sided(&self, regions: &[u32]) -> Vec<u32> {
+        let mut pool = regions.to_vec();
+        while !pool.iter().any(|&r| self.regions[r as usize].sides.len() == 4) {
+            let beside: Vec<u32> = self
+                .arc_sides()
+                .iter()
+                .map(|on| [on[0].0, on[1].0])
+                .filter(|[a, b]| *b != NONE && pool.contains(a) != pool.contains(b))
+                .map(|[a, b]| if pool.contains(&a) { b } else { a })
+                .collect();
+            if beside.is_empty() {
+                break;
+            }
+            pool.extend(beside);
+            pool.sort_unstable();
+            pool.dedup();
+        }
+        pool
+    }
+
+    /// Relaxes the four-sided region among `regions` (or near them) and that corner of it where a 3-5
+    /// pair costs least. `false`: there is none.
     pub fn relax(&mut self, regions: &[u32], wanted: &[f64], boundary: &Boundary, targets: &Targets) -> bool {
         let mut best: Option<(f64, u32, usize)> = None;
-        for &r in regions {
+        for r in self.with_four_sided(regions) {
             let sides = &self.regions[r as usize].sides;
             if sides.len() != 4 {
                 continue;

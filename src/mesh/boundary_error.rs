@@ -8,7 +8,7 @@
 
 use crate::domain::{Boundary, Chain, Frame, Span};
 use crate::numerics::{GaussLegendre, GaussLobatto, Interpolation, Point, Vector};
-use crate::options::{Norm, Options, Tolerance};
+use crate::options::{Norm, Options};
 use nalgebra::DMatrix;
 
 /// The tolerance every boundary edge has to keep.
@@ -25,10 +25,7 @@ impl BoundaryTolerance {
     /// The options' tolerance in the canonical frame. A relative one, E, means E · D^{3/2} (E · D for the
     /// maximum), D the diagonal of the domain's bounding box.
     pub fn new(options: &Options, boundary: &Boundary) -> Self {
-        let value = match options.tolerance {
-            Tolerance::Relative(e) => e * norm_unit(options.norm, boundary.diagonal),
-            Tolerance::Absolute(e) => e / norm_unit(options.norm, boundary.frame.scale),
-        };
+        let value = boundary.canonical_tolerance(options.tolerance, options.norm);
         BoundaryTolerance { norm: options.norm, order: options.order, value }
     }
 

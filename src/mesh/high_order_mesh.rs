@@ -5,7 +5,7 @@ use super::{
     BoundaryError, BoundaryTolerance, DomainCurve, ExactCurve, Geometry, HighOrderMesh, JacobianProof,
     MeshEdge, QuadMesh, Quality, Verdict,
 };
-use crate::domain::{Boundary, BoundaryPoint, Chain, Domain, Frame, Place};
+use crate::domain::{Boundary, BoundaryPoint, Domain, Frame, Place};
 use crate::error::{Error, Result};
 use crate::mesh::boundary_error::breaks_within;
 use crate::numerics::{Point, Vector, NONE};
@@ -233,9 +233,8 @@ fn measured_edges(
         };
         if let Some(span) = edge.span {
             let chain = &boundary.chains[span.chain as usize];
-            let start = chain.segment_parameter(span.start);
-            let end = end_parameter(chain, span.end);
-            let ends = [start, end].map(|(segment, t)| curve.place(chain.loop_index, segment, t));
+            let at = |s: f64| BoundaryPoint { chain: span.chain, s: chain.wrap(s) };
+            let ends = [curve.place(at(span.start), false)?, curve.place(at(span.end), true)?];
             result.boundary = chain.name;
             result.loop_index = ends[0].loop_index;
             result.segments = ends.map(|e| e.segment);
@@ -298,17 +297,4 @@ fn exact_error(
         }
     }
     Ok(last)
-}
-
-/// Segment and parameter of the end of a piece: at a joint those of the segment that ends there.
-fn end_parameter(chain: &Chain, end: f64) -> (u32, f64) {
-    let s = if end >= chain.length && end <= chain.length * (1.0 + f64::EPSILON) {
-        chain.length
-    } else {
-        chain.wrap(end)
-    };
-    match chain.samples.get(chain.samples.partition_point(|x| x.s < s)) {
-        Some(sample) if sample.s == s => (sample.segment, sample.t),
-        _ => chain.segment_parameter(s),
-    }
 }

@@ -1,8 +1,9 @@
 //! Quality measures of a curved element.
 
+use super::dense::{multiply, row_major, row_major_transposed};
 use crate::numerics::interpolation::chebyshev_lobatto;
 use crate::numerics::{GaussLobatto, Interpolation, Point, Vector};
-use nalgebra::DMatrix;
+use crate::options::Options;
 
 /// Measures of one element; minima and maxima are over the whole element.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,12 +26,19 @@ pub struct ElementMeasures {
 pub struct Quality {
     lobatto: GaussLobatto,
     nodes: Interpolation,
-    differentiation: DMatrix<f64>,
+    /// Derivatives at the nodes, `[i][k]` row by row.
+    differentiation: Vec<f64>,
     /// Sample points along one direction, ends included.
     points: Vec<f64>,
-    value: DMatrix<f64>,
-    slope: DMatrix<f64>,
+    /// From the nodes to values and derivatives at the sample points, row by row, and the transposes.
+    value: Vec<f64>,
+    slope: Vec<f64>,
+    value_t: Vec<f64>,
+    slope_t: Vec<f64>,
 }
+
+/// Most nodes along one direction.
+const MAX_NODES: usize = Options::MAX_ORDER + 1;
 
 /// Halvings of the step around the least sample.
 const REFINEMENTS: usize = 8;
@@ -38,23 +46,36 @@ const REFINEMENTS: usize = 8;
 impl Quality {
     /// Tables for elements of order `order` (1 to 32).
     pub fn new(order: usize) -> Self {
-        let lobatto = GaussLobatto::new(order);
+        let lobatto = GaussLobatto::new(order.min(Options::MAX_ORDER));
         let nodes = Interpolation::new(lobatto.nodes.clone());
         // Odd degree + 1 points have no centre, so the degree is even.
         let points = chebyshev_lobatto((2 * lobatto.order() + 4).max(12));
-        let value = nodes.matrix(&points);
-        let slope = nodes.derivative_matrix(&points);
-        Quality { differentiation: nodes.differentiation(), lobatto, nodes, points, value, slope }
+        let (value, slope) = (nodes.matrix(&points), nodes.derivative_matrix(&points));
+        Quality {
+            differentiation: row_major(&nodes.differentiation()),
+            value: row_major(&value),
+            slope: row_major(&slope),
+            value_t: row_major_transposed(&value),
+            slope_t: row_major_transposed(&slope),
+            lobatto,
+            nodes,
+            points,
+        }
     }
 
-    /// x_ξ and x_η at every sample point, as rows over η and columns over ξ.
-    fn slopes(&self, nodes: &[Point]) -> [DMatrix<f64>; 4] {
-        let n = self.nodes.nodes.len();
-        let [x, y] = [0, 1].map(|c| DMatrix::from_iterator(n, n, nodes.iter().map(|p| p[c])));
-        // Column-major: rows of these are ξ, columns η.
-        let along = |m: &DMatrix<f64>| &self.slope * m * self.value.transpose();
-        let across = |m: &DMatrix<f64>| &self.value * m * self.slope.transpose();
-        [along(&x), along(&y), across(&x), across(&y)]
+    /// x_ξ, y_ξ, x_η, y_η at every sample point, `[η][ξ]`.
+    fn slopes(&self, nodes: &[Point]) -> [Vec<f64>; 4] {
+        let (n, m) = (self.nodes.nodes.len(), self.points.len());
+        let mut result: [Vec<f64>; 4] = Default::default();
+        let mut rows = Vec::new();
+        for c in 0..2 {
+            let x: Vec<f64> = nodes.iter().map(|p| p[c]).collect();
+            multiply(&self.value, &x, m, n, n, &mut rows);
+            multiply(&rows, &self.slope_t, m, n, m, &mut result[c]);
+            multiply(&self.slope, &x, m, n, n, &mut rows);
+            multiply(&rows, &self.value_t, m, n, m, &mut result[2 + c]);
+        }
+        result
     }
 
     /// Minimum of det J / (|x_ξ| |x_η|) over the element with nodes `[j][i]`: samples, corners
@@ -97,20 +118,23 @@ impl Quality {
     /// x_ξ and x_η at reference point `at`.
     pub fn derivatives(&self, nodes: &[Point], at: [f64; 2]) -> (Vector, Vector) {
         let n = self.nodes.nodes.len();
-        let [(a, da), (b, db)] = at.map(|x| {
-            let mut basis = vec![0.0; n];
-            self.nodes.basis(x, &mut basis);
-            let slope: Vec<f64> =
-                (0..n).map(|k| (0..n).map(|i| basis[i] * self.differentiation[(i, k)]).sum()).collect();
-            (basis, slope)
-        });
-        let (mut u, mut v) = (Vector::zeros(), Vector::zeros());
-        for j in 0..n {
-            for i in 0..n {
-                let p = nodes[j * n + i].coords;
-                u += p * (da[i] * b[j]);
-                v += p * (a[i] * db[j]);
+        let mut basis = [[0.0; MAX_NODES]; 2];
+        let mut slopes = [[0.0; MAX_NODES]; 2];
+        for c in 0..2 {
+            self.nodes.basis(at[c], &mut basis[c][..n]);
+            for (b, row) in basis[c].iter().zip(self.differentiation.chunks_exact(n)) {
+                slopes[c].iter_mut().zip(row).for_each(|(s, d)| *s += b * d);
             }
+        }
+        let (mut u, mut v) = (Vector::zeros(), Vector::zeros());
+        for (j, row) in nodes.chunks_exact(n).enumerate() {
+            let (mut along, mut value) = (Vector::zeros(), Vector::zeros());
+            for (i, p) in row.iter().enumerate() {
+                along += p.coords * slopes[0][i];
+                value += p.coords * basis[0][i];
+            }
+            u += along * basis[1][j];
+            v += value * slopes[1][j];
         }
         (u, v)
     }
@@ -159,8 +183,8 @@ impl Quality {
             for i in 0..n {
                 let (mut u, mut v) = (Vector::zeros(), Vector::zeros());
                 for k in 0..n {
-                    u += (nodes[j * n + k] - origin) * d[(i, k)];
-                    v += (nodes[k * n + i] - origin) * d[(j, k)];
+                    u += (nodes[j * n + k] - origin) * d[i * n + k];
+                    v += (nodes[k * n + i] - origin) * d[j * n + k];
                 }
                 area += self.lobatto.weights[i] * self.lobatto.weights[j] * (u.x * v.y - u.y * v.x);
             }
@@ -181,7 +205,8 @@ impl Quality {
             };
             (0..n)
                 .map(|i| {
-                    let d: Vector = (0..n).map(|k| (node(k) - node(0)) * self.differentiation[(i, k)]).sum();
+                    let d: Vector =
+                        (0..n).map(|k| (node(k) - node(0)) * self.differentiation[i * n + k]).sum();
                     self.lobatto.weights[i] * d.norm()
                 })
                 .sum()

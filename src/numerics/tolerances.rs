@@ -111,13 +111,13 @@ pub const PLACE_DISTANCE: f64 = 1e-9;
 /// Largest difference of arc lengths that are the same place, relative to the domain's diagonal.
 pub const SPAN_GAP: f64 = 1e-12;
 
-/// Turn of the cross by unit of polar angle at a corner above which the sense of the turn is in doubt: it is
-/// 1 at 45°, where both senses cost the same, and falls to this at 58°.
-pub const TIP_RATE: f64 = 0.55;
+/// Corner angles (32° to 58°) across which the cross turns by 32° or more: near 45° both senses of that turn
+/// cost the same.
+pub const TIP_DOUBT: [f64; 2] = [0.558, 1.012];
 
 /// How far from such a corner the field is held on the corner's own solution, relative to the shorter side.
 /// The singular point of a corner just above 45° settles there, so it sets the tip's element size.
-pub const TIP_SHARE: f64 = 0.2;
+pub const TIP_SHARE: f64 = 0.25;
 
 /// Most that a side may turn within that distance, in radians.
 pub const TIP_TURN: f64 = 0.1;

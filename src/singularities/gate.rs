@@ -1,8 +1,8 @@
 //! What the base mesh does not resolve.
 
 use super::Singularity;
-use crate::base_mesh::Triangulation;
-use crate::cross_field::{doubtful_corners, CrossField};
+use crate::base_mesh::{doubtful_corners, Triangulation};
+use crate::cross_field::CrossField;
 use crate::domain::Boundary;
 use crate::numerics::tolerances::{BORDER_EDGE_TURN, LIKE_SIGN_EDGES};
 use crate::numerics::{Point, NONE};

@@ -57,43 +57,59 @@ impl<'a> View<'a> {
         (1.0 - evenness) * (direction - angle) + evenness * even
     }
 
-    /// Whether the blended excess grows all the way around, so that it takes every value once.
-    fn grows(&self, evenness: f64) -> bool {
-        let mut last = f64::NEG_INFINITY;
+    /// The border points where the blended excess is a whole number of quarter turns, counter-clockwise.
+    fn crossings(&self, evenness: f64) -> Vec<(u8, f64)> {
+        let mut found = Vec::new();
+        let mut last = self.excess(0, 0.0, evenness);
         for edge in 0..3 {
             for k in 0..=INTERVALS {
-                let value = self.excess(edge, k as f64 / INTERVALS as f64, evenness);
+                let share = k as f64 / INTERVALS as f64;
+                let value = self.excess(edge, share, evenness);
+                let (low, high) = (last.min(value), last.max(value));
+                let mut levels: Vec<f64> = ((low / FRAC_PI_2).ceil() as i64
+                    ..=(high / FRAC_PI_2).floor() as i64)
+                    .map(|m| m as f64 * FRAC_PI_2)
+                    // Each interval holds its end and not its start.
+                    .filter(|&level| level != last)
+                    .collect();
                 if value < last {
-                    return false;
+                    levels.reverse();
                 }
+                // At k = 0 the cross turns at the corner: such a point belongs to the edge's start.
+                let from = (k.max(1) - 1) as f64 / INTERVALS as f64;
+                found.extend(
+                    levels.into_iter().map(|x| (edge as u8, self.solve(edge, [from, share], x, evenness))),
+                );
                 last = value;
             }
         }
-        last <= self.excess(0, 0.0, evenness) + 2.0 * PI * self.slope + 1e-9
+        // The turn at the first corner comes last.
+        let closed = self.excess(0, 0.0, evenness) + 2.0 * PI * self.slope;
+        let levels = (closed / FRAC_PI_2).floor() - (last / FRAC_PI_2).floor();
+        if closed - last > 1e-9 && levels >= 1.0 {
+            found.push((2, 1.0));
+        }
+        found
     }
 
-    /// The border point where the blended excess, which grows, reaches `level`.
-    fn solve(&self, level: f64, evenness: f64) -> (usize, f64) {
-        // A level inside the jump at a corner belongs to the end of the edge before it.
-        let edge = (0..3).find(|&e| self.excess(e, 1.0, evenness) >= level).unwrap_or(2);
-        if self.excess(edge, 0.0, evenness) > level {
-            return (edge, 0.0);
-        }
-        let (mut low, mut high) = (0.0, 1.0);
+    /// The share of `edge` between two where the blended excess is `level`.
+    fn solve(&self, edge: usize, between: [f64; 2], level: f64, evenness: f64) -> f64 {
+        let [mut from, mut to] = between;
+        let below = self.excess(edge, from, evenness) < level;
         for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            match self.excess(edge, middle, evenness) < level {
-                true => low = middle,
-                false => high = middle,
+            let middle = 0.5 * (from + to);
+            match (self.excess(edge, middle, evenness) < level) == below {
+                true => from = middle,
+                false => to = middle,
             }
         }
-        (edge, 0.5 * (low + high))
+        0.5 * (from + to)
     }
 }
 
 /// The singular point and its ports (edge, share) in counter-clockwise order, `valence` of them.
 ///
-/// Ports are where the cross points away from the point. Seen from `point` the linear cross may turn so
+/// Ports are where the cross points away from the point. Seen from `point` the cross may turn so
 /// unevenly that there are more such places. Then the point is moved towards the centroid, and
 /// if that does not help the cross is blended with one that turns evenly about the point (its
 /// conformal part), as little as makes the number right.
@@ -106,20 +122,18 @@ pub(super) fn ports(
     let centroid = Point::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0);
     let moves = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| (point + (centroid - point) * share, 0.0));
     let blends = [0.25, 0.5, 0.75, 1.0].map(|evenness| (centroid, evenness));
-    let mut chosen = (centroid, 1.0);
+    let mut chosen = (point, Vec::new());
     for (place, evenness) in moves.into_iter().chain(blends) {
-        if View::new(corners, field, place, valence).grows(evenness) {
-            chosen = (place, evenness);
+        let view = View::new(corners, field, place, valence);
+        chosen = (place, view.crossings(evenness));
+        if chosen.1.len() == valence as usize {
             break;
         }
     }
-    let (point, evenness) = chosen;
-    let view = View::new(corners, field, point, valence);
-    let first = (view.excess(0, 0.0, evenness) / FRAC_PI_2).ceil();
-    let mut ports: Vec<(u8, f64)> = (0..valence)
-        .map(|k| view.solve((first + f64::from(k)) * FRAC_PI_2, evenness))
-        .map(|(edge, share)| (edge as u8, share.clamp(PORT_SHARE, 1.0 - PORT_SHARE)))
-        .collect();
+    let (point, mut ports) = chosen;
+    for port in &mut ports {
+        port.1 = port.1.clamp(PORT_SHARE, 1.0 - PORT_SHARE);
+    }
     // Ports pushed off the same corner stay apart and in order.
     for k in 1..ports.len() {
         if ports[k].0 == ports[k - 1].0 && ports[k].1 <= ports[k - 1].1 {

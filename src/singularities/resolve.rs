@@ -9,7 +9,7 @@ use crate::numerics::tolerances::LEAST_REFINEMENT;
 use crate::options::FieldMethod;
 
 /// Most rounds of refinement.
-const ROUNDS: usize = 6;
+const ROUNDS: usize = 4;
 
 /// Base mesh, field and singularities that belong together.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,6 +4,9 @@ use super::{BidirectedFlow, Step};
 use crate::numerics::NONE;
 use std::collections::BTreeSet;
 
+/// Refused walks after which a descent bans more at a time.
+const PATIENCE: usize = 8;
+
 impl BidirectedFlow {
     /// Whether lowering `variable` by one is allowed.
     fn can_lower(&self, variable: usize) -> bool {
@@ -19,8 +22,12 @@ impl BidirectedFlow {
         let sum = Self::summed(steps);
         let mut taken = false;
         loop {
-            let gain: i64 = sum.iter().map(|&(a, step)| self.marginal(a as usize, step)).sum();
-            if gain >= 0 || !self.too_low(&sum).is_empty() {
+            // A variable passed twice changes by two, which costs more than twice one.
+            let change = |&(a, step): &Step| {
+                let (a, n) = (a as usize, self.values[a as usize]);
+                self.cost_at(a, n + step) - self.cost_at(a, n)
+            };
+            if sum.iter().map(change).sum::<i64>() >= 0 || !self.too_low(&sum).is_empty() {
                 return taken;
             }
             self.apply(&sum);
@@ -45,6 +52,7 @@ impl BidirectedFlow {
         let mut left = 4_000 * (self.variables.len() as u64 + 100);
         let mut leaving = Vec::new();
         let mut taken = BTreeSet::new();
+        let mut refusals = 0;
         while let Some(s) = self.queue.pop_front() {
             self.queued[s as usize] = false;
             leaving.clear();
@@ -81,7 +89,8 @@ impl BidirectedFlow {
                 if self.take(&steps) {
                     taken.extend(steps.iter().map(|s| s.0));
                 } else if !mirrored {
-                    Self::ban(walk, &mut banned);
+                    refusals += 1;
+                    Self::ban(walk, refusals > PATIENCE, &mut banned);
                 }
                 // Labels that rest on a changed or banned step are worth nothing any more.
                 for &(a, _) in &steps {
@@ -101,10 +110,12 @@ impl BidirectedFlow {
     }
 
     /// A refused walk went through a variable twice: bans one of the two passages, so that walks which pass once
-    /// remain possible (from the other side). All of its steps if there is none.
-    fn ban(mut walk: Vec<(u32, Step)>, banned: &mut BTreeSet<(u32, Step)>) {
+    /// remain possible (from the other side), or `both`. All of its steps if there is none.
+    fn ban(mut walk: Vec<(u32, Step)>, both: bool, banned: &mut BTreeSet<(u32, Step)>) {
         walk.sort_unstable_by_key(|&(state, step)| (step, state));
-        let twice: Vec<_> = walk.windows(2).filter(|p| p[0].1 == p[1].1).map(|p| p[1]).collect();
+        let kept = if both { 0 } else { 1 };
+        let twice: Vec<_> =
+            walk.windows(2).filter(|p| p[0].1 == p[1].1).flat_map(|p| p[kept..].to_vec()).collect();
         banned.extend(if twice.is_empty() { walk } else { twice });
     }
 }

@@ -222,7 +222,7 @@ impl BidirectedFlow {
         (COST_UNITS * v.weight * d * (1.0 + SPREAD * d)).round() as i64
     }
 
-    /// Cost of changing `variable` by `step`.
+    /// Cost of changing `variable` by `step`, +1 or -1.
     fn marginal(&self, variable: usize, step: i32) -> i64 {
         self.marginals[variable][(step > 0) as usize]
     }
