@@ -21,8 +21,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("separatrices", &["domain", "base_mesh", "cross_field", "singularities"]),
     ("layout", &["domain", "singularities", "separatrices"]),
     ("mesh", &["domain"]),
-    ("refine", &["domain", "mesh", "layout"]),
     ("smooth", &["domain", "mesh"]),
+    // Coarsening re-optimises round every removal.
+    ("refine", &["domain", "mesh", "layout", "smooth"]),
     ("input", &["domain"]),
     ("stages", &["domain", "base_mesh", "cross_field", "singularities", "separatrices", "layout"]),
     ("statistics", &["domain", "mesh", "stages"]),
