@@ -32,6 +32,7 @@ pub fn trace(
     seeds: &[BoundaryPoint],
 ) -> Result<Vec<Separatrix>> {
     let mut tracer = tracer::Tracer::new(mesh, field, boundary, singularities, corners);
+    tracer.cut_tips()?;
     tracer.launch_all()?;
     tracer.run()?;
     tracer.connect_loops()?;

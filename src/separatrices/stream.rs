@@ -245,9 +245,15 @@ impl Stream<'_> {
         let wrapped =
             from.edge < ports[i].edge || (from.edge == ports[i].edge && from.share < ports[i].share);
         let lifted = if wrapped { branch - winding } else { branch };
-        let ccw = (lifted - port_branch).rem_euclid(2) == 0;
-        // The interval between the ports on both sides of the one that is crossed.
-        let (first, last) = if ccw { (i, i + 2) } else { (i + n - 1, i + n + 1) };
+        // From port j to port j + 2 one family flows around the singular point: from the first to the
+        // second counter-clockwise, or back. Streamlines beside the middle port may enter past it.
+        let (first, ccw) = match (lifted - port_branch).rem_euclid(4) {
+            0 => (i, false),
+            1 => (i + n - 1, true),
+            2 => (i, true),
+            _ => (i + n - 1, false),
+        };
+        let last = first + 2;
         let (p, q) = (ports[first % n], ports[last % n]);
         let starts_wrapped = from.edge < p.edge || (from.edge == p.edge && from.share < p.share);
         // Branch on the lift whose value at `from` is `branch`, as seen at each edge of the interval.

@@ -167,6 +167,38 @@ impl<'a> Tracer<'a> {
         Error::Separatrix { reason: reason.into(), at: Some(at) }
     }
 
+    /// Cuts every tip (a corner without quads) off by a ray across it, which runs before all others:
+    /// lines along the sides would else meet in the tip. What is cut off is a triangle.
+    pub fn cut_tips(&mut self) -> Result<()> {
+        for c in self.corners.iter().filter(|c| c.quads == 0) {
+            let mesh = self.stream.mesh;
+            let (l, i) = self.border_index[c.vertex as usize];
+            let cycle = &mesh.loops[l as usize];
+            let n = cycle.len();
+            let point = |k: usize| mesh.vertices[cycle[k % n] as usize].point;
+            let junction = &self.boundary.junctions[c.junction as usize];
+            let sides =
+                [junction.chain_in, junction.chain_out].map(|k| self.boundary.chains[k as usize].length);
+            let reach = TIP_SIDE_SHARE * sides[0].min(sides[1]);
+            // The edge that holds the cut, but not one that has turned away from the tip's side.
+            let first = point(i as usize + 1) - point(i as usize);
+            let mut edge = i as usize;
+            for k in i as usize..i as usize + n - 1 {
+                let along = point(k + 1) - point(k);
+                if cross(first, along).atan2(first.dot(&along)).abs() > TIP_TURN {
+                    break;
+                }
+                edge = k;
+                if (point(k + 1) - point(i as usize)).norm() > reach {
+                    break;
+                }
+            }
+            self.launch_seed(l, (edge % n) as u32)?;
+            self.run()?;
+        }
+        Ok(())
+    }
+
     /// Launches all separatrices of singularities and corners.
     pub fn launch_all(&mut self) -> Result<()> {
         for (i, s) in self.singularities.iter().enumerate() {
@@ -336,7 +368,8 @@ impl<'a> Tracer<'a> {
                 s.ports.iter().map(|&(e, share)| Position { edge: e as usize, share }).collect();
             self.stream.through_singular(t, &ports, from, branch, s.point)
         };
-        if passage.is_none() { eprintln!("DBG t {t} from {from:?} branch {branch} singular {singular} tri {:?} cross {:?} pts {:?}", self.stream.mesh.neighbors[t as usize], self.stream.field.triangles[t as usize], [0,1,2].map(|i| self.stream.corner(t,i))); }
+        // Lines along the sides of a tip meet in it; the ray that cuts the tip off is crossed before.
+        let passage = passage.or_else(|| self.tip_of(t).map(|edge| (Position { edge, share: 0.0 }, true)));
         let (to, ccw) = passage.ok_or_else(|| self.failure("the field leads nowhere in a triangle", here))?;
         let family = branch.rem_euclid(2);
         let mut chord = Chord { trace: id, step, from, to, course: Course::Through(ccw), family, end: None };
@@ -372,6 +405,9 @@ impl<'a> Tracer<'a> {
             self.chords[t as usize].push(chord);
             return Ok(());
         }
+        if to.share == 0.0 {
+            return Err(self.failure("a separatrix runs into a sharp corner", exit));
+        }
         self.chords[t as usize].push(chord);
         let end = match self.stream.across(t, to, branch_at_exit(&self.stream, t, from, to, branch, ccw)) {
             None => Err(self.border_end(t, to)),
@@ -385,6 +421,15 @@ impl<'a> Tracer<'a> {
             Ok((triangle, at, branch)) => (trace.triangle, trace.at, trace.branch) = (triangle, at, branch),
         }
         Ok(())
+    }
+
+    /// The corner of triangle `t` that is a tip, if it has one.
+    fn tip_of(&self, t: u32) -> Option<usize> {
+        let field = self.stream.field;
+        let corners = &self.stream.mesh.triangles[t as usize];
+        corners
+            .iter()
+            .position(|&v| self.border_index[v as usize].0 != NONE && field.quads_at[v as usize] == 0)
     }
 
     /// Where the straight chords meet; on the host's chord also where they miss each other beside a
@@ -475,6 +520,12 @@ impl<'a> Tracer<'a> {
             .collect()
     }
 }
+
+/// How far from a tip it is cut off, relative to the shorter of its sides.
+const TIP_SIDE_SHARE: f64 = 0.3;
+
+/// Most that a tip's side may turn before the cut, in radians.
+const TIP_TURN: f64 = 0.35;
 
 /// Where on its border edge a seed ray starts: off the middle, so that symmetric domains do not tie.
 const SEED_SHARE: f64 = 0.47;
