@@ -18,6 +18,7 @@ mod halving;
 mod pieces;
 mod placement;
 mod respace;
+mod split;
 mod stars;
 mod trial;
 
@@ -25,4 +26,5 @@ pub use coarsen::coarsen;
 pub use halving::place_by_halving;
 pub use pieces::least_pieces;
 pub use placement::{place_equal_error, Placement};
+pub use split::split_chord;
 pub use trial::Limits;

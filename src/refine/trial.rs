@@ -51,20 +51,17 @@ pub(super) fn settle(
         }
     }
     let active = change.stars.rings(mesh, &seeds, RINGS);
-    let good = |mesh: &QuadMesh| {
-        let quality = optimiser.quality_of(mesh, Some(&active));
-        quality.min_scaled_jacobian >= limits.scaled_jacobian
-            && quality.min_jacobian_ratio >= limits.jacobian_ratio
-            && quality.error_ratio <= 1.0
-            && quality.elements.iter().all(|e| e.size <= limits.size)
-    };
     for effort in [Effort::Quick, Effort::Full] {
         let outcome = optimiser.optimise(mesh, Some(&active), effort);
-        if outcome.valid && good(mesh) {
+        let quality = optimiser.quality_of(mesh, Some(&active));
+        let others = quality.min_jacobian_ratio >= limits.jacobian_ratio
+            && quality.error_ratio <= 1.0
+            && quality.elements.iter().all(|e| e.size <= limits.size);
+        if outcome.valid && others && quality.min_scaled_jacobian >= limits.scaled_jacobian {
             return Some((change.mesh, active));
         }
-        // What could not be untangled, or is far off, will not come back.
-        if !outcome.valid || outcome.min_scaled_jacobian < 0.5 * limits.scaled_jacobian {
+        // More work lifts the scaled Jacobian, not the rest; and what is far off will not come back.
+        if !outcome.valid || !others || quality.min_scaled_jacobian < 0.5 * limits.scaled_jacobian {
             return None;
         }
     }

@@ -20,8 +20,8 @@ pub(super) enum Measure {
 /// λ above: size counts half as much as shape.
 const SIZE_WEIGHT: f64 = 0.5;
 
-/// w above: enough to notice where d falls below a twentieth of its mean.
-const EVENNESS: f64 = 0.05;
+/// w above: enough to notice where d falls below a tenth of its mean.
+const EVENNESS: f64 = 0.1;
 
 /// Samples along an element's four sides, in the element's directions, as read from the shared
 /// edges; `c` values, `d` slopes; `[side][x or y][sample]`.
@@ -140,7 +140,7 @@ fn run<const K: usize, const P: u32>(
     let (area, area_i) = (target.area, 1.0 / target.area);
     let shift = (epsilon * area) * (epsilon * area);
     let weight = 1.0 / (K * K) as f64;
-    let (mut energy, mut least) = (0.0, f64::INFINITY);
+    let (mut energy, mut least) = ([0.0; K], [f64::INFINITY; K]);
     let mut g = [[[0.0; K]; 2]; 4]; // gradient with respect to e
     let mut gw = [[0.0; K]; 2]; // to w: c₂ − c₀ along ξ
     let mut gv = [[0.0; K]; 2]; // to c₁ − c₃ along η
@@ -148,15 +148,16 @@ fn run<const K: usize, const P: u32>(
         let (tj, uj) = (t[j], 1.0 - t[j]);
         let (vx, vy) = (c[1][0][j] - c[3][0][j], c[1][1][j] - c[3][1][j]);
         let (e3x, e3y, e1x, e1y) = (e[3][0][j], e[3][1][j], e[1][0][j], e[1][1][j]);
-        let mut row = [0.0; 6];
+        let (sx, sy) = (e1x - e3x, e1y - e3y);
+        // Rows first, sums afterwards: sums would keep the loop from running on vector registers.
+        let (mut gax, mut gay, mut gbx, mut gby) = ([0.0; K], [0.0; K], [0.0; K], [0.0; K]);
         for i in 0..K {
-            let (ti, ui) = (t[i], 1.0 - t[i]);
             let ax = uj * e[0][0][i] + tj * e[2][0][i] + vx;
             let ay = uj * e[0][1][i] + tj * e[2][1][i] + vy;
-            let bx = ui * e3x + ti * e1x + w[0][i];
-            let by = ui * e3y + ti * e1y + w[1][i];
+            let bx = e3x + t[i] * sx + w[0][i];
+            let by = e3y + t[i] * sy + w[1][i];
             let det = ax * by - ay * bx;
-            least = if det < least { det } else { least };
+            least[i] = if det < least[i] { det } else { least[i] };
             let half = 0.5 * (r * (ax * ax + ay * ay) + ri * (bx * bx + by * by));
             // The gradient is g_a = linear · r a − cross · (d's gradient), likewise for b.
             let (linear, cross);
@@ -166,7 +167,7 @@ fn run<const K: usize, const P: u32>(
                 let chi = if det > 0.0 { 0.5 * (det + root) } else { 0.5 * shift / (root - det) };
                 let chi_i = 1.0 / chi;
                 let f = (half + 0.5 * SIZE_WEIGHT * (det * det * area_i + area)) * chi_i;
-                energy += f;
+                energy[i] += f;
                 linear = chi_i;
                 cross = f / root - SIZE_WEIGHT * det * area_i * chi_i;
             } else {
@@ -175,35 +176,42 @@ fn run<const K: usize, const P: u32>(
                 let (up, down) = (0.5 * EVENNESS * det * area_i, 0.5 * EVENNESS * area * inverse);
                 let f = shape + up + down;
                 let power = power_less_one::<P>(f);
-                energy += f * power;
+                energy[i] += f * power;
                 let slope = power * inverse;
                 linear = (1.0 - EVENNESS) * slope;
                 cross = slope * (shape + down - up);
             }
-            let gax = linear * r * ax - cross * by;
-            let gay = linear * r * ay + cross * bx;
-            let gbx = linear * ri * bx + cross * ay;
-            let gby = linear * ri * by - cross * ax;
-            g[0][0][i] += uj * gax;
-            g[0][1][i] += uj * gay;
-            g[2][0][i] += tj * gax;
-            g[2][1][i] += tj * gay;
-            gw[0][i] += gbx;
-            gw[1][i] += gby;
-            row[0] += gax;
-            row[1] += gay;
-            row[2] += ui * gbx;
-            row[3] += ui * gby;
-            row[4] += ti * gbx;
-            row[5] += ti * gby;
+            gax[i] = linear * r * ax - cross * by;
+            gay[i] = linear * r * ay + cross * bx;
+            gbx[i] = linear * ri * bx + cross * ay;
+            gby[i] = linear * ri * by - cross * ax;
+        }
+        for i in 0..K {
+            g[0][0][i] += uj * gax[i];
+            g[0][1][i] += uj * gay[i];
+            g[2][0][i] += tj * gax[i];
+            g[2][1][i] += tj * gay[i];
+            gw[0][i] += gbx[i];
+            gw[1][i] += gby[i];
+        }
+        let mut row = [0.0; 6];
+        for i in 0..K {
+            row[0] += gax[i];
+            row[1] += gay[i];
+            row[2] += gbx[i];
+            row[3] += gby[i];
+            row[4] += t[i] * gbx[i];
+            row[5] += t[i] * gby[i];
         }
         (gv[0][j], gv[1][j]) = (row[0], row[1]);
-        (g[3][0][j], g[3][1][j]) = (row[2], row[3]);
+        (g[3][0][j], g[3][1][j]) = (row[2] - row[4], row[3] - row[5]);
         (g[1][0][j], g[1][1][j]) = (row[4], row[5]);
-        if P != 0 && least <= 0.0 {
+        if P != 0 && least.iter().any(|d| *d <= 0.0) {
             return None;
         }
     }
+    let energy: f64 = energy.iter().sum();
+    let least = least.iter().copied().fold(f64::INFINITY, f64::min);
     for axis in 0..2 {
         let mut sum = [0.0; 4];
         for side in 0..4 {

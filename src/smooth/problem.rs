@@ -1,15 +1,14 @@
 //! A mesh, or a few of its quads, as a function of unknowns: interior vertices, arc lengths of boundary
 //! vertices, bubbles of interior edges.
 
-use super::edge_error::{barrier, error, squared_error};
+use super::edge_error::{barrier, squared_error};
 use super::kernel::{self, Measure, Sides, Target};
 use super::minimiser::Objective;
 use super::reference::{Reference, MAX_SAMPLES};
 use super::walk::walk;
 use crate::domain::{Boundary, BoundaryPoint, Place, Span};
-use crate::mesh::{BoundaryTolerance, QuadMesh};
+use crate::mesh::{BoundaryError, QuadMesh};
 use crate::numerics::{Point, Vector, NONE};
-use crate::options::Norm;
 
 /// Weight of the tolerance's barrier against the shape energy, whose optimum is 1/p an element.
 const TOLERANCE_WEIGHT: f64 = 2e-3;
@@ -17,7 +16,9 @@ const TOLERANCE_WEIGHT: f64 = 2e-3;
 const LENGTH_WEIGHT: f64 = 1e-3;
 /// The barrier stands this much before the tolerance.
 const MARGIN: f64 = 0.98;
-/// Room given to an edge whose error is (nearly) above the tolerance.
+/// Errors closer to a limit than this share are taken as above it.
+const CLOSE: f64 = 0.995;
+/// Room given to an edge whose error is above the tolerance.
 const ROOM: f64 = 1.05;
 /// Weight of the barrier on such edges, which are to come back below.
 const RESCUE_WEIGHT: f64 = 0.2;
@@ -83,7 +84,7 @@ struct LocalElement {
 pub(super) struct Problem<'a> {
     boundary: &'a Boundary,
     reference: &'a Reference,
-    tolerance: Option<BoundaryTolerance>,
+    tolerance: Option<&'a BoundaryError>,
     vertices: Vec<LocalVertex>,
     edges: Vec<LocalEdge>,
     elements: Vec<LocalElement>,
@@ -106,7 +107,7 @@ impl<'a> Problem<'a> {
     pub fn new(
         boundary: &'a Boundary,
         reference: &'a Reference,
-        tolerance: Option<BoundaryTolerance>,
+        tolerance: Option<&'a BoundaryError>,
         mesh: &QuadMesh,
         active: Option<&[u32]>,
         slide: bool,
@@ -425,8 +426,8 @@ impl<'a> Problem<'a> {
         self.refresh_limits();
     }
 
-    /// Limits of the boundary errors. The barrier is of the L2 norm; for another norm its limit is
-    /// scaled by the present ratio of the two.
+    /// Limits of the boundary errors. The barrier's own error is of the L2 norm and by few points;
+    /// its limit is scaled by the present ratio of that to the true one.
     fn refresh_limits(&mut self) {
         let Some(tolerance) = self.tolerance else { return };
         let (x, n) = (&self.unknowns, self.reference.nodes.len());
@@ -438,16 +439,19 @@ impl<'a> Problem<'a> {
                 *length = end - start;
                 let own = &self.nodes[*nodes as usize..*nodes as usize + n];
                 let chain = &self.boundary.chains[*chain as usize];
-                let in_norm = |norm| error(self.reference, chain, start, *length, own, norm);
-                let now = in_norm(tolerance.norm);
-                let wanted = MARGIN * tolerance.value;
-                (*limit, *weight) = if now < 0.99 * wanted {
+                let now = tolerance.of_chain(chain, start, end);
+                let value = tolerance.tolerance.value;
+                let wanted = MARGIN * value;
+                (*limit, *weight) = if now < CLOSE * wanted {
                     (wanted, TOLERANCE_WEIGHT)
+                } else if now < CLOSE * value {
+                    (value, RESCUE_WEIGHT)
                 } else {
                     (ROOM * now, RESCUE_WEIGHT)
                 };
-                if tolerance.norm != Norm::L2 && now > 1e-3 * wanted {
-                    *limit *= in_norm(Norm::L2) / now;
+                if now > 1e-3 * wanted {
+                    let seen = squared_error(self.reference, chain, start, *length, own).value.sqrt();
+                    *limit *= seen / now;
                 }
             }
         }
@@ -456,15 +460,12 @@ impl<'a> Problem<'a> {
     /// Largest error of the boundary edges that move, divided by the tolerance.
     pub fn error_ratio(&self) -> f64 {
         let Some(tolerance) = self.tolerance else { return 0.0 };
-        let n = self.reference.nodes.len();
         let mut most = 0.0f64;
         for edge in self.edges.iter().filter(|e| e.moves) {
-            if let Shape::Boundary { chain, unknowns, offsets, nodes, .. } = edge.shape {
+            if let Shape::Boundary { chain, unknowns, offsets, .. } = edge.shape {
                 let [start, end] = arc_lengths(&self.unknowns, unknowns, offsets);
-                let own = &self.nodes[nodes as usize..nodes as usize + n];
-                let chain = &self.boundary.chains[chain as usize];
-                let now = error(self.reference, chain, start, end - start, own, tolerance.norm);
-                most = most.max(now / tolerance.value);
+                let now = tolerance.of_chain(&self.boundary.chains[chain as usize], start, end);
+                most = most.max(now / tolerance.tolerance.value);
             }
         }
         most
@@ -704,7 +705,8 @@ impl Objective for Problem<'_> {
 mod tests {
     use super::*;
     use crate::domain::{Chain, Frame, Sample};
-    use crate::mesh::Vertex;
+    use crate::mesh::{BoundaryTolerance, Vertex};
+    use crate::options::Norm;
     use std::collections::HashMap;
 
     /// An ellipse of five quads: no symmetry left, bubbles on all interior edges.
@@ -724,7 +726,9 @@ mod tests {
             .collect();
         let chain = Chain { loop_index: 0, name: 0, ends: None, length: s, samples, breaks: vec![] };
         let boundary = Boundary {
-            frame: Frame::identity(), diagonal: 1.0, loop_sources: vec![],
+            frame: Frame::identity(),
+            diagonal: 1.0,
+            loop_sources: vec![],
             names: vec!["outer".into()],
             chains: vec![chain],
             junctions: vec![],
@@ -759,8 +763,8 @@ mod tests {
     fn gradients_agree_with_differences() {
         let (boundary, mesh) = example();
         let reference = Reference::for_energy(5);
-        let tolerance = Some(BoundaryTolerance { norm: Norm::L2, order: 5, value: 1e-3 });
-        let mut problem = Problem::new(&boundary, &reference, tolerance, &mesh, None, true);
+        let error = BoundaryError::new(BoundaryTolerance { norm: Norm::L2, order: 5, value: 1e-3 });
+        let mut problem = Problem::new(&boundary, &reference, Some(&error), &mesh, None, true);
         let x = problem.unknowns.clone();
         let mut gradient = vec![0.0; x.len()];
         let mut scrap = gradient.clone();
