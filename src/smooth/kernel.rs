@@ -4,6 +4,9 @@
 //! X = (1−η) c₀(ξ) + η c₂(ξ) + (1−ξ) c₃(η) + ξ c₁(η) − bilinear. So a = X_ξ and b = X_η at the
 //! samples need only the values and slopes of the edges there, and the gradient flows back to them.
 
+// Several arrays run in step in every loop here; zipping them would hide the formulas.
+#![allow(clippy::needless_range_loop)]
+
 /// What is summed over the samples of an element (as a mean), from a = X_ξ, b = X_η, d = a × b.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Measure {
@@ -19,9 +22,6 @@ pub(super) enum Measure {
 
 /// λ above: size counts half as much as shape.
 const SIZE_WEIGHT: f64 = 0.5;
-
-/// w above: enough to notice where d falls below a tenth of its mean.
-const EVENNESS: f64 = 0.1;
 
 /// Samples along an element's four sides, in the element's directions, as read from the shared
 /// edges; `c` values, `d` slopes; `[side][x or y][sample]`.
@@ -70,11 +70,12 @@ impl<const K: usize> Sides<K> {
     }
 }
 
-/// Aspect ratio r = ℓ₂/ℓ₁ and area A that an element is measured against.
+/// Aspect ratio r = ℓ₂/ℓ₁ and area A that an element is measured against, and the weight w.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Target {
     pub ratio: f64,
     pub area: f64,
+    pub evenness: f64,
 }
 
 /// `base` to the power p − 1 for the p that [`Measure::Shape`] allows.
@@ -110,17 +111,10 @@ pub(super) fn element<const K: usize>(
     }
 }
 
-/// P = 0: the regularised measure.
-#[inline]
-fn run<const K: usize, const P: u32>(
-    epsilon: f64,
-    t: &[f64; K],
-    sides: &Sides<K>,
-    target: Target,
-    out: &mut Sides<K>,
-) -> Option<(f64, f64)> {
+/// Slopes of the sides less those of the bilinear map, and c₂ − c₀ along ξ.
+#[inline(always)]
+fn differences<const K: usize>(sides: &Sides<K>) -> ([[[f64; K]; 2]; 4], [[f64; K]; 2]) {
     let (c, d) = (&sides.c, &sides.d);
-    // Slopes of the sides less those of the bilinear map, and differences of opposite sides.
     let mut e = [[[0.0; K]; 2]; 4];
     let mut w = [[0.0; K]; 2];
     for axis in 0..2 {
@@ -136,9 +130,45 @@ fn run<const K: usize, const P: u32>(
             w[axis][k] = c[2][axis][k] - c[0][axis][k];
         }
     }
+    (e, w)
+}
+
+/// The least and the largest d over the samples.
+pub(super) fn jacobians<const K: usize>(t: &[f64; K], sides: &Sides<K>) -> (f64, f64) {
+    let c = &sides.c;
+    let (e, w) = differences(sides);
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for j in 0..K {
+        let (tj, uj) = (t[j], 1.0 - t[j]);
+        for i in 0..K {
+            let ax = uj * e[0][0][i] + tj * e[2][0][i] + c[1][0][j] - c[3][0][j];
+            let ay = uj * e[0][1][i] + tj * e[2][1][i] + c[1][1][j] - c[3][1][j];
+            let bx = (1.0 - t[i]) * e[3][0][j] + t[i] * e[1][0][j] + w[0][i];
+            let by = (1.0 - t[i]) * e[3][1][j] + t[i] * e[1][1][j] + w[1][i];
+            let det = ax * by - ay * bx;
+            least = least.min(det);
+            most = most.max(det);
+        }
+    }
+    (least, most)
+}
+
+/// P = 0: the regularised measure.
+#[inline]
+fn run<const K: usize, const P: u32>(
+    epsilon: f64,
+    t: &[f64; K],
+    sides: &Sides<K>,
+    target: Target,
+    out: &mut Sides<K>,
+) -> Option<(f64, f64)> {
+    let c = &sides.c;
+    let (e, w) = differences(sides);
     let (r, ri) = (target.ratio, 1.0 / target.ratio);
     let (area, area_i) = (target.area, 1.0 / target.area);
+    let (angle, even) = (1.0 - target.evenness, 0.5 * target.evenness);
     let shift = (epsilon * area) * (epsilon * area);
+    let shift_i = 1.0 / shift;
     let weight = 1.0 / (K * K) as f64;
     let (mut energy, mut least) = ([0.0; K], [f64::INFINITY; K]);
     let mut g = [[[0.0; K]; 2]; 4]; // gradient with respect to e
@@ -162,23 +192,23 @@ fn run<const K: usize, const P: u32>(
             // The gradient is g_a = linear · r a − cross · (d's gradient), likewise for b.
             let (linear, cross);
             if P == 0 {
+                // χ = s/2 for d > 0, else (εA)²/(2s), s = √(d² + (εA)²) + |d|: neither cancels.
                 let root = (det * det + shift).sqrt();
-                // The second form does not cancel for d < 0.
-                let chi = if det > 0.0 { 0.5 * (det + root) } else { 0.5 * shift / (root - det) };
-                let chi_i = 1.0 / chi;
+                let s = root + det.abs();
+                let chi_i = if det > 0.0 { 2.0 / s } else { 2.0 * s * shift_i };
                 let f = (half + 0.5 * SIZE_WEIGHT * (det * det * area_i + area)) * chi_i;
                 energy[i] += f;
                 linear = chi_i;
                 cross = f / root - SIZE_WEIGHT * det * area_i * chi_i;
             } else {
                 let inverse = 1.0 / det;
-                let shape = (1.0 - EVENNESS) * half * inverse;
-                let (up, down) = (0.5 * EVENNESS * det * area_i, 0.5 * EVENNESS * area * inverse);
+                let shape = angle * half * inverse;
+                let (up, down) = (even * det * area_i, even * area * inverse);
                 let f = shape + up + down;
                 let power = power_less_one::<P>(f);
                 energy[i] += f * power;
                 let slope = power * inverse;
-                linear = (1.0 - EVENNESS) * slope;
+                linear = angle * slope;
                 cross = slope * (shape + down - up);
             }
             gax[i] = linear * r * ax - cross * by;

@@ -125,12 +125,13 @@ impl<'a> Optimiser<'a> {
         if !valid {
             // First with the boundary fixed: sliding vertices would rather pile up than let go. If
             // both fail, the start was worthless: the same from straight edges and mean positions.
-            for (slide, flatten) in [(false, false), (true, false), (false, true), (true, false)] {
+            let ways: &[(bool, bool)] = match effort {
+                Effort::Quick => &[(true, false)],
+                Effort::Full => &[(false, false), (true, false), (false, true), (true, false)],
+            };
+            for (slide, flatten) in ways.iter().copied() {
                 problem = new(mesh, slide);
                 if flatten {
-                    if effort == Effort::Quick {
-                        break;
-                    }
                     problem.flatten(FLATTEN_SWEEPS);
                 }
                 let (rounds, steps) = (schedule.untangle_rounds, schedule.untangle_steps);

@@ -22,6 +22,12 @@ const CLOSE: f64 = 0.995;
 const ROOM: f64 = 1.05;
 /// Weight of the barrier on such edges, which are to come back below.
 const RESCUE_WEIGHT: f64 = 0.2;
+/// Weight of an even Jacobian against angles in the shape energy ...
+const EVENNESS: f64 = 0.1;
+/// ... which grows where its least value falls below this share of its largest, ...
+const UNEVEN: f64 = 0.15;
+/// ... up to this.
+const MOST_EVENNESS: f64 = 0.5;
 /// Aspect ratios up to this are left alone; beyond, elements are drawn back to it gently.
 const FREE_ASPECT: f64 = 6.0;
 
@@ -99,6 +105,24 @@ pub(super) struct Problem<'a> {
     pub measure: Measure,
     /// Least d/A of the last evaluation.
     pub least: f64,
+}
+
+/// Calls a method that is generic in the number of samples.
+macro_rules! for_samples {
+    ($problem:expr, $method:ident) => {
+        match $problem.reference.samples.len() {
+            3 => $problem.$method::<3>(),
+            4 => $problem.$method::<4>(),
+            5 => $problem.$method::<5>(),
+            6 => $problem.$method::<6>(),
+            7 => $problem.$method::<7>(),
+            8 => $problem.$method::<8>(),
+            9 => $problem.$method::<9>(),
+            10 => $problem.$method::<10>(),
+            11 => $problem.$method::<11>(),
+            _ => $problem.$method::<MAX_SAMPLES>(),
+        }
+    };
 }
 
 impl<'a> Problem<'a> {
@@ -180,7 +204,11 @@ impl<'a> Problem<'a> {
             }
             let starts = [quad[0], quad[1], quad[3], quad[0]];
             let flips = [0, 1, 2, 3].map(|i| mesh.edges[global[i] as usize].vertices[0] != starts[i]);
-            problem.elements.push(LocalElement { edges, flips, target: Target { ratio: 1.0, area: 1.0 } });
+            problem.elements.push(LocalElement {
+                edges,
+                flips,
+                target: Target { ratio: 1.0, area: 1.0, evenness: EVENNESS },
+            });
         }
         let k4 = 4 * reference.samples.len();
         problem.samples = vec![0.0; problem.edges.len() * k4];
@@ -389,7 +417,7 @@ impl<'a> Problem<'a> {
             let area = area(element, &self.samples, self.reference.samples.len());
             // Inverted elements have no area worth keeping.
             let area = if area > 0.2 * l1 * l2 { area } else { l1 * l2 };
-            element.target = Target { ratio: tame(l2 / l1), area };
+            element.target = Target { ratio: tame(l2 / l1), area, evenness: EVENNESS };
             for (i, e) in element.edges.iter().enumerate() {
                 let width = if i % 2 == 0 { l2 } else { l1 };
                 widths[*e as usize] += 1.0 / (width * width);
@@ -423,6 +451,7 @@ impl<'a> Problem<'a> {
                 }
             }
         }
+        self.refresh_evenness();
         self.refresh_limits();
     }
 
@@ -526,6 +555,28 @@ impl<'a> Problem<'a> {
                     target.span = Some(Span { chain, start: from, end: from + (end - start) });
                 }
             }
+        }
+    }
+
+    fn refresh_evenness(&mut self) {
+        for_samples!(self, weigh_elements)
+    }
+
+    /// Gives uneven elements more weight on evenness.
+    fn weigh_elements<const K: usize>(&mut self) {
+        let mut t = [0.0; K];
+        t.copy_from_slice(&self.reference.samples);
+        let mut sides = Sides::<K>::ZERO;
+        for element in &mut self.elements {
+            for side in 0..4 {
+                let at = element.edges[side] as usize * 4 * K;
+                sides.read(side, &self.samples[at..at + 4 * K], element.flips[side]);
+            }
+            let (least, most) = kernel::jacobians(&t, &sides);
+            let wanted = EVENNESS * UNEVEN * most / least;
+            // Inverted elements have other worries.
+            let wanted = if least > 0.0 { wanted } else { EVENNESS };
+            element.target.evenness = wanted.clamp(EVENNESS, MOST_EVENNESS);
         }
     }
 
@@ -677,18 +728,7 @@ impl Objective for Problem<'_> {
             return f64::INFINITY;
         }
         self.adjoint.fill(0.0);
-        let energy = match self.reference.samples.len() {
-            3 => self.evaluate_elements::<3>(),
-            4 => self.evaluate_elements::<4>(),
-            5 => self.evaluate_elements::<5>(),
-            6 => self.evaluate_elements::<6>(),
-            7 => self.evaluate_elements::<7>(),
-            8 => self.evaluate_elements::<8>(),
-            9 => self.evaluate_elements::<9>(),
-            10 => self.evaluate_elements::<10>(),
-            11 => self.evaluate_elements::<11>(),
-            _ => self.evaluate_elements::<MAX_SAMPLES>(),
-        };
+        let energy = for_samples!(self, evaluate_elements);
         if !energy.is_finite() {
             return f64::INFINITY;
         }
