@@ -3,7 +3,7 @@
 use crate::base_mesh::Triangulation;
 use crate::domain::{Boundary, Place};
 use crate::error::{Error, Result};
-use crate::numerics::tolerances::{CORNER_TIE, TIP_ANGLE};
+use crate::numerics::tolerances::{CORNER_TIE, TIP_ANGLE, TIP_DOUBT};
 use crate::numerics::{cross, NONE};
 use std::f64::consts::FRAC_PI_2;
 
@@ -49,7 +49,29 @@ impl Border {
                 border.turn_about(mesh, t, i)?;
             }
         }
+        border.raise_tips(mesh, boundary);
         Ok(border)
+    }
+
+    /// Near 45° none and one quad cost the field the same. Where the corners ask for more five-valent
+    /// singularities than three-valent ones a tip's missing quad would bring another: it gets its one,
+    /// the widest tips first.
+    fn raise_tips(&mut self, mesh: &Triangulation, boundary: &Boundary) {
+        let euler = 2 - boundary.loops.len() as i64;
+        let corners: i64 = mesh.loops.iter().flatten().map(|&v| 2 - i64::from(self.quads[v as usize])).sum();
+        let mut tips: Vec<(f64, u32)> = (mesh.loops.iter().flatten())
+            .filter(|&&v| self.quads[v as usize] == 0)
+            .filter_map(|&v| match mesh.vertices[v as usize].place {
+                Place::Junction(j) => Some((boundary.junctions[j as usize].angle, v)),
+                _ => None,
+            })
+            .filter(|tip| tip.0 > TIP_DOUBT[0])
+            .collect();
+        tips.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let missing = (corners - 4 * euler).max(0) as usize;
+        for (_, v) in tips.into_iter().take(missing) {
+            self.quads[v as usize] = 1;
+        }
     }
 
     /// Walks counter-clockwise about the vertex at corner `i` of triangle `t`, whose outgoing border edge

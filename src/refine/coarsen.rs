@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::mesh::QuadMesh;
 use crate::progress::{Progress, Stage};
 use crate::smooth::{Effort, Optimiser};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Scaled Jacobian below which an element counts as spoiled by a merge.
 const SPOILED: f64 = 0.15;
@@ -39,6 +39,8 @@ struct Coarsening<'a> {
     time: usize,
     /// When each vertex was last moved or merged.
     changed: Vec<usize>,
+    /// When each chord or diagonal was last refused.
+    failed: HashMap<Key, usize>,
 }
 
 /// A chord's or diagonal's name that survives changes elsewhere: the least pair of vertices on it.
@@ -87,7 +89,17 @@ pub fn coarsen(
     };
     let stars = Stars::new(mesh.vertices.len(), &mesh.quads);
     let changed = vec![0; mesh.vertices.len()];
-    let mut run = Coarsening { boundary, optimiser, limits, least, mesh, stars, time: 0, changed };
+    let mut run = Coarsening {
+        boundary,
+        optimiser,
+        limits,
+        least,
+        mesh,
+        stars,
+        time: 0,
+        changed,
+        failed: HashMap::new(),
+    };
     for pass in 0..PASSES {
         let before = run.time;
         progress.report(Stage::Refine, pass as f64 / PASSES as f64)?;
@@ -165,15 +177,17 @@ impl Coarsening<'_> {
     }
 
     fn remove_chords(&mut self, progress: &Progress) -> Result<()> {
-        // Last score and when it was computed; when a chord last failed.
+        // Last score and when it was computed; chords that failed in this pass.
         let mut scores: HashMap<Key, (f64, usize)> = HashMap::new();
-        let mut failed: HashMap<Key, usize> = HashMap::new();
+        let mut failed: HashSet<Key> = HashSet::new();
         loop {
             let spare = self.spare();
             let mut queue: Vec<(f64, Key, Chord)> = Vec::new();
             for chord in chords(&self.mesh) {
                 let key = self.key(&chord);
-                if failed.get(&key).is_some_and(|t| !self.changed_since(&chord.quads, *t)) {
+                if failed.contains(&key)
+                    || self.failed.get(&key).is_some_and(|t| !self.changed_since(&chord.quads, *t))
+                {
                     continue;
                 }
                 if let Some((score, _)) = scores.get(&key) {
@@ -183,7 +197,7 @@ impl Coarsening<'_> {
                     scores.insert(key, (score, self.time));
                     queue.push((score, key, chord));
                 } else {
-                    failed.insert(key, self.time);
+                    self.failed.insert(key, self.time);
                 }
             }
             queue.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
@@ -194,7 +208,7 @@ impl Coarsening<'_> {
                 let (_, key, chord) = queue[i].clone();
                 i += 1;
                 let Ok(change) = self.merge_chord(&chord, &spare) else {
-                    failed.insert(key, self.time);
+                    self.failed.insert(key, self.time);
                     continue;
                 };
                 if scores.get(&key).is_none_or(|s| s.1 < self.time) {
@@ -210,7 +224,8 @@ impl Coarsening<'_> {
                     accepted = true;
                     break;
                 }
-                failed.insert(key, self.time);
+                failed.insert(key);
+                self.failed.insert(key, self.time);
             }
             if !accepted {
                 return Ok(());
@@ -219,7 +234,7 @@ impl Coarsening<'_> {
     }
 
     fn collapse_diagonals(&mut self, progress: &Progress) -> Result<()> {
-        let mut failed: HashMap<Key, usize> = HashMap::new();
+        let mut failed: HashSet<Key> = HashSet::new();
         loop {
             let spare = self.spare();
             let mut queue: Vec<(isize, f64, Key, u32)> = Vec::new();
@@ -228,7 +243,8 @@ impl Coarsening<'_> {
                 for [a, b] in [[quad[0], quad[2]], [quad[1], quad[3]]] {
                     let key = [a.min(b), a.max(b)];
                     if on_boundary(&self.mesh, a) && on_boundary(&self.mesh, b)
-                        || failed.get(&key).is_some_and(|t| !self.changed_since(&[q], *t))
+                        || failed.contains(&key)
+                        || self.failed.get(&key).is_some_and(|t| !self.changed_since(&[q], *t))
                     {
                         continue;
                     }
@@ -241,7 +257,7 @@ impl Coarsening<'_> {
                             continue;
                         }
                     }
-                    failed.insert(key, self.time);
+                    self.failed.insert(key, self.time);
                 }
             }
             queue.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
@@ -255,7 +271,8 @@ impl Coarsening<'_> {
                         break;
                     }
                 }
-                failed.insert(key, self.time);
+                failed.insert(key);
+                self.failed.insert(key, self.time);
             }
             if !accepted {
                 return Ok(());

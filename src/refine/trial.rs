@@ -24,8 +24,8 @@ impl Limits {
     }
 }
 
-/// Rings of quads around a change that are re-optimised.
-const RINGS: usize = 3;
+/// Rings of quads around a change that are re-optimised, and the effort, in turn until one will do.
+const ATTEMPTS: [(usize, Effort); 3] = [(1, Effort::Quick), (3, Effort::Quick), (3, Effort::Full)];
 
 /// Completes a merge: boundary vertices re-spaced, the surroundings optimised. The mesh, and the
 /// quads that were optimised, if `limits` hold for them; a second attempt costs more work.
@@ -50,21 +50,34 @@ pub(super) fn settle(
             seeds.extend(respace(optimiser.boundary(), error, mesh, chain)?);
         }
     }
-    let active = change.stars.rings(mesh, &seeds, RINGS);
-    let good = |mesh: &QuadMesh| {
-        let quality = optimiser.quality_of(mesh, Some(&active));
-        quality.min_scaled_jacobian >= limits.scaled_jacobian
-            && quality.min_jacobian_ratio >= limits.jacobian_ratio
-            && quality.error_ratio <= 1.0
-            && quality.elements.iter().all(|e| e.size <= limits.size)
-    };
-    for effort in [Effort::Quick, Effort::Full] {
+    let (mut done, mut hopeless) = (0, false);
+    for (rings, effort) in ATTEMPTS {
+        let active = change.stars.rings(mesh, &seeds, rings);
+        if hopeless && active.len() == done {
+            return None;
+        }
+        done = active.len();
+        let t0 = std::time::Instant::now();
         let outcome = optimiser.optimise(mesh, Some(&active), effort);
-        if outcome.valid && good(mesh) {
+        let quality = optimiser.quality_of(mesh, Some(&active));
+        eprintln!(
+            "DBG {effort:?}{rings} active {} of {} {:?} {} ms ratio {}",
+            active.len(),
+            mesh.quads.len(),
+            outcome,
+            t0.elapsed().as_millis(),
+            quality.min_jacobian_ratio
+        );
+        let others = quality.min_jacobian_ratio >= limits.jacobian_ratio
+            && quality.error_ratio <= 1.0
+            && quality.elements.iter().all(|e| e.size <= limits.size);
+        if outcome.valid && others && quality.min_scaled_jacobian >= limits.scaled_jacobian {
             return Some((change.mesh, active));
         }
-        // What could not be untangled, or is far off, will not come back.
-        if !outcome.valid || outcome.min_scaled_jacobian < 0.5 * limits.scaled_jacobian {
+        // More work lifts the scaled Jacobian, not the rest; and what is far off will not come back.
+        let hopeless =
+            !outcome.valid || !others || quality.min_scaled_jacobian < 0.5 * limits.scaled_jacobian;
+        if rings > 1 && hopeless {
             return None;
         }
     }

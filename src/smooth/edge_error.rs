@@ -5,7 +5,6 @@ use super::reference::Reference;
 use super::walk::walk;
 use crate::domain::Chain;
 use crate::numerics::Vector;
-use crate::options::Norm;
 
 /// Errors far below the limit, as a share of it, count as this: the barrier's root would otherwise
 /// turn rounding errors of straight edges into slopes.
@@ -45,34 +44,6 @@ pub(super) fn squared_error(
     SquaredError {
         value: length * sum,
         slope: [2.0 * length * slope[0] - sum, 2.0 * length * slope[1] + sum],
-    }
-}
-
-/// The edge's error in `norm`.
-pub(super) fn error(
-    reference: &Reference,
-    chain: &Chain,
-    start: f64,
-    length: f64,
-    nodes: &[[Vector; 2]],
-    norm: Norm,
-) -> f64 {
-    let n = nodes.len();
-    let (mut square, mut slope, mut largest) = (0.0, 0.0, 0.0f64);
-    walk(chain, start, length, &reference.error_points, |q, point, tangent| {
-        let (mut gap, mut turn) = (point, tangent);
-        for (i, [p, _]) in nodes.iter().enumerate() {
-            gap -= p * reference.error_lagrange[q * n + i];
-            turn -= p * (reference.error_lagrange_slope[q * n + i] / length);
-        }
-        square += reference.error_weights[q] * gap.norm_squared();
-        slope += reference.error_weights[q] * turn.norm_squared();
-        largest = largest.max(gap.norm());
-    });
-    match norm {
-        Norm::L2 => (length * square).sqrt(),
-        Norm::H1 => (length * square + length.powi(3) * slope).sqrt(),
-        Norm::Max => largest,
     }
 }
 

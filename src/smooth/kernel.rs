@@ -4,6 +4,9 @@
 //! X = (1−η) c₀(ξ) + η c₂(ξ) + (1−ξ) c₃(η) + ξ c₁(η) − bilinear. So a = X_ξ and b = X_η at the
 //! samples need only the values and slopes of the edges there, and the gradient flows back to them.
 
+// Several arrays run in step in every loop here; zipping them would hide the formulas.
+#![allow(clippy::needless_range_loop)]
+
 /// What is summed over the samples of an element (as a mean), from a = X_ξ, b = X_η, d = a × b.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Measure {
@@ -19,9 +22,6 @@ pub(super) enum Measure {
 
 /// λ above: size counts half as much as shape.
 const SIZE_WEIGHT: f64 = 0.5;
-
-/// w above: enough to notice where d falls below a twentieth of its mean.
-const EVENNESS: f64 = 0.05;
 
 /// Samples along an element's four sides, in the element's directions, as read from the shared
 /// edges; `c` values, `d` slopes; `[side][x or y][sample]`.
@@ -70,11 +70,12 @@ impl<const K: usize> Sides<K> {
     }
 }
 
-/// Aspect ratio r = ℓ₂/ℓ₁ and area A that an element is measured against.
+/// Aspect ratio r = ℓ₂/ℓ₁ and area A that an element is measured against, and the weight w.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Target {
     pub ratio: f64,
     pub area: f64,
+    pub evenness: f64,
 }
 
 /// `base` to the power p − 1 for the p that [`Measure::Shape`] allows.
@@ -110,17 +111,10 @@ pub(super) fn element<const K: usize>(
     }
 }
 
-/// P = 0: the regularised measure.
-#[inline]
-fn run<const K: usize, const P: u32>(
-    epsilon: f64,
-    t: &[f64; K],
-    sides: &Sides<K>,
-    target: Target,
-    out: &mut Sides<K>,
-) -> Option<(f64, f64)> {
+/// Slopes of the sides less those of the bilinear map, and c₂ − c₀ along ξ.
+#[inline(always)]
+fn differences<const K: usize>(sides: &Sides<K>) -> ([[[f64; K]; 2]; 4], [[f64; K]; 2]) {
     let (c, d) = (&sides.c, &sides.d);
-    // Slopes of the sides less those of the bilinear map, and differences of opposite sides.
     let mut e = [[[0.0; K]; 2]; 4];
     let mut w = [[0.0; K]; 2];
     for axis in 0..2 {
@@ -136,11 +130,47 @@ fn run<const K: usize, const P: u32>(
             w[axis][k] = c[2][axis][k] - c[0][axis][k];
         }
     }
+    (e, w)
+}
+
+/// The least and the largest d over the samples.
+pub(super) fn jacobians<const K: usize>(t: &[f64; K], sides: &Sides<K>) -> (f64, f64) {
+    let c = &sides.c;
+    let (e, w) = differences(sides);
+    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    for j in 0..K {
+        let (tj, uj) = (t[j], 1.0 - t[j]);
+        for i in 0..K {
+            let ax = uj * e[0][0][i] + tj * e[2][0][i] + c[1][0][j] - c[3][0][j];
+            let ay = uj * e[0][1][i] + tj * e[2][1][i] + c[1][1][j] - c[3][1][j];
+            let bx = (1.0 - t[i]) * e[3][0][j] + t[i] * e[1][0][j] + w[0][i];
+            let by = (1.0 - t[i]) * e[3][1][j] + t[i] * e[1][1][j] + w[1][i];
+            let det = ax * by - ay * bx;
+            least = least.min(det);
+            most = most.max(det);
+        }
+    }
+    (least, most)
+}
+
+/// P = 0: the regularised measure.
+#[inline]
+fn run<const K: usize, const P: u32>(
+    epsilon: f64,
+    t: &[f64; K],
+    sides: &Sides<K>,
+    target: Target,
+    out: &mut Sides<K>,
+) -> Option<(f64, f64)> {
+    let c = &sides.c;
+    let (e, w) = differences(sides);
     let (r, ri) = (target.ratio, 1.0 / target.ratio);
     let (area, area_i) = (target.area, 1.0 / target.area);
+    let (angle, even) = (1.0 - target.evenness, 0.5 * target.evenness);
     let shift = (epsilon * area) * (epsilon * area);
+    let shift_i = 1.0 / shift;
     let weight = 1.0 / (K * K) as f64;
-    let (mut energy, mut least) = (0.0, f64::INFINITY);
+    let (mut energy, mut least) = ([0.0; K], [f64::INFINITY; K]);
     let mut g = [[[0.0; K]; 2]; 4]; // gradient with respect to e
     let mut gw = [[0.0; K]; 2]; // to w: c₂ − c₀ along ξ
     let mut gv = [[0.0; K]; 2]; // to c₁ − c₃ along η
@@ -148,62 +178,70 @@ fn run<const K: usize, const P: u32>(
         let (tj, uj) = (t[j], 1.0 - t[j]);
         let (vx, vy) = (c[1][0][j] - c[3][0][j], c[1][1][j] - c[3][1][j]);
         let (e3x, e3y, e1x, e1y) = (e[3][0][j], e[3][1][j], e[1][0][j], e[1][1][j]);
-        let mut row = [0.0; 6];
+        let (sx, sy) = (e1x - e3x, e1y - e3y);
+        // Rows first, sums afterwards: sums would keep the loop from running on vector registers.
+        let (mut gax, mut gay, mut gbx, mut gby) = ([0.0; K], [0.0; K], [0.0; K], [0.0; K]);
         for i in 0..K {
-            let (ti, ui) = (t[i], 1.0 - t[i]);
             let ax = uj * e[0][0][i] + tj * e[2][0][i] + vx;
             let ay = uj * e[0][1][i] + tj * e[2][1][i] + vy;
-            let bx = ui * e3x + ti * e1x + w[0][i];
-            let by = ui * e3y + ti * e1y + w[1][i];
+            let bx = e3x + t[i] * sx + w[0][i];
+            let by = e3y + t[i] * sy + w[1][i];
             let det = ax * by - ay * bx;
-            least = if det < least { det } else { least };
+            least[i] = if det < least[i] { det } else { least[i] };
             let half = 0.5 * (r * (ax * ax + ay * ay) + ri * (bx * bx + by * by));
             // The gradient is g_a = linear · r a − cross · (d's gradient), likewise for b.
             let (linear, cross);
             if P == 0 {
+                // χ = s/2 for d > 0, else (εA)²/(2s), s = √(d² + (εA)²) + |d|: neither cancels.
                 let root = (det * det + shift).sqrt();
-                // The second form does not cancel for d < 0.
-                let chi = if det > 0.0 { 0.5 * (det + root) } else { 0.5 * shift / (root - det) };
-                let chi_i = 1.0 / chi;
+                let s = root + det.abs();
+                let chi_i = if det > 0.0 { 2.0 / s } else { 2.0 * s * shift_i };
                 let f = (half + 0.5 * SIZE_WEIGHT * (det * det * area_i + area)) * chi_i;
-                energy += f;
+                energy[i] += f;
                 linear = chi_i;
                 cross = f / root - SIZE_WEIGHT * det * area_i * chi_i;
             } else {
                 let inverse = 1.0 / det;
-                let shape = (1.0 - EVENNESS) * half * inverse;
-                let (up, down) = (0.5 * EVENNESS * det * area_i, 0.5 * EVENNESS * area * inverse);
+                let shape = angle * half * inverse;
+                let (up, down) = (even * det * area_i, even * area * inverse);
                 let f = shape + up + down;
                 let power = power_less_one::<P>(f);
-                energy += f * power;
+                energy[i] += f * power;
                 let slope = power * inverse;
-                linear = (1.0 - EVENNESS) * slope;
+                linear = angle * slope;
                 cross = slope * (shape + down - up);
             }
-            let gax = linear * r * ax - cross * by;
-            let gay = linear * r * ay + cross * bx;
-            let gbx = linear * ri * bx + cross * ay;
-            let gby = linear * ri * by - cross * ax;
-            g[0][0][i] += uj * gax;
-            g[0][1][i] += uj * gay;
-            g[2][0][i] += tj * gax;
-            g[2][1][i] += tj * gay;
-            gw[0][i] += gbx;
-            gw[1][i] += gby;
-            row[0] += gax;
-            row[1] += gay;
-            row[2] += ui * gbx;
-            row[3] += ui * gby;
-            row[4] += ti * gbx;
-            row[5] += ti * gby;
+            gax[i] = linear * r * ax - cross * by;
+            gay[i] = linear * r * ay + cross * bx;
+            gbx[i] = linear * ri * bx + cross * ay;
+            gby[i] = linear * ri * by - cross * ax;
+        }
+        for i in 0..K {
+            g[0][0][i] += uj * gax[i];
+            g[0][1][i] += uj * gay[i];
+            g[2][0][i] += tj * gax[i];
+            g[2][1][i] += tj * gay[i];
+            gw[0][i] += gbx[i];
+            gw[1][i] += gby[i];
+        }
+        let mut row = [0.0; 6];
+        for i in 0..K {
+            row[0] += gax[i];
+            row[1] += gay[i];
+            row[2] += gbx[i];
+            row[3] += gby[i];
+            row[4] += t[i] * gbx[i];
+            row[5] += t[i] * gby[i];
         }
         (gv[0][j], gv[1][j]) = (row[0], row[1]);
-        (g[3][0][j], g[3][1][j]) = (row[2], row[3]);
+        (g[3][0][j], g[3][1][j]) = (row[2] - row[4], row[3] - row[5]);
         (g[1][0][j], g[1][1][j]) = (row[4], row[5]);
-        if P != 0 && least <= 0.0 {
+        if P != 0 && least.iter().any(|d| *d <= 0.0) {
             return None;
         }
     }
+    let energy: f64 = energy.iter().sum();
+    let least = least.iter().copied().fold(f64::INFINITY, f64::min);
     for axis in 0..2 {
         let mut sum = [0.0; 4];
         for side in 0..4 {

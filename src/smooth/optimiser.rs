@@ -34,6 +34,8 @@ pub struct Outcome {
 /// Step bound of the minimiser, in natural lengths.
 const REACH: f64 = 0.5;
 
+/// Extra rounds for boundary edges that are still above the tolerance.
+const RESCUES: usize = 3;
 /// Sweeps of the relaxation that restarts a hopeless mesh.
 const FLATTEN_SWEEPS: usize = 200;
 
@@ -116,19 +118,20 @@ impl<'a> Optimiser<'a> {
         let mut lbfgs = Lbfgs::default();
         let mut evaluations = 0;
         let new = |mesh: &QuadMesh, slide| {
-            Problem::new(self.boundary, &self.energy, self.tolerance(), mesh, active, slide)
+            Problem::new(self.boundary, &self.energy, self.error.as_ref(), mesh, active, slide)
         };
         let mut problem = new(mesh, true);
         let mut valid = problem.least_jacobian() > 0.0;
         if !valid {
             // First with the boundary fixed: sliding vertices would rather pile up than let go. If
             // both fail, the start was worthless: the same from straight edges and mean positions.
-            for (slide, flatten) in [(false, false), (true, false), (false, true), (true, false)] {
+            let ways: &[(bool, bool)] = match effort {
+                Effort::Quick => &[(true, false)],
+                Effort::Full => &[(false, false), (true, false), (false, true), (true, false)],
+            };
+            for (slide, flatten) in ways.iter().copied() {
                 problem = new(mesh, slide);
                 if flatten {
-                    if effort == Effort::Quick {
-                        break;
-                    }
                     problem.flatten(FLATTEN_SWEEPS);
                 }
                 let (rounds, steps) = (schedule.untangle_rounds, schedule.untangle_steps);
@@ -142,7 +145,11 @@ impl<'a> Optimiser<'a> {
             valid = problem.least_jacobian() > 0.0;
         }
         if valid {
-            for power in schedule.powers {
+            let rescue = std::iter::repeat_n(&8, RESCUES);
+            for (round, power) in schedule.powers.iter().chain(rescue).enumerate() {
+                if round >= schedule.powers.len() && problem.error_ratio() <= 1.0 {
+                    break;
+                }
                 problem.measure = Measure::Shape(*power);
                 problem.refresh();
                 let mut x = std::mem::take(&mut problem.unknowns);

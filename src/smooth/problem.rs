@@ -1,15 +1,14 @@
 //! A mesh, or a few of its quads, as a function of unknowns: interior vertices, arc lengths of boundary
 //! vertices, bubbles of interior edges.
 
-use super::edge_error::{barrier, error, squared_error};
+use super::edge_error::{barrier, squared_error};
 use super::kernel::{self, Measure, Sides, Target};
 use super::minimiser::Objective;
 use super::reference::{Reference, MAX_SAMPLES};
 use super::walk::walk;
 use crate::domain::{Boundary, BoundaryPoint, Place, Span};
-use crate::mesh::{BoundaryTolerance, QuadMesh};
+use crate::mesh::{BoundaryError, QuadMesh};
 use crate::numerics::{Point, Vector, NONE};
-use crate::options::Norm;
 
 /// Weight of the tolerance's barrier against the shape energy, whose optimum is 1/p an element.
 const TOLERANCE_WEIGHT: f64 = 2e-3;
@@ -17,10 +16,18 @@ const TOLERANCE_WEIGHT: f64 = 2e-3;
 const LENGTH_WEIGHT: f64 = 1e-3;
 /// The barrier stands this much before the tolerance.
 const MARGIN: f64 = 0.98;
-/// Room given to an edge whose error is (nearly) above the tolerance.
+/// Errors closer to a limit than this share are taken as above it.
+const CLOSE: f64 = 0.995;
+/// Room given to an edge whose error is above the tolerance.
 const ROOM: f64 = 1.05;
 /// Weight of the barrier on such edges, which are to come back below.
 const RESCUE_WEIGHT: f64 = 0.2;
+/// Weight of an even Jacobian against angles in the shape energy ...
+const EVENNESS: f64 = 0.1;
+/// ... which grows where its least value falls below this share of its largest, ...
+const UNEVEN: f64 = 0.15;
+/// ... up to this.
+const MOST_EVENNESS: f64 = 0.5;
 /// Aspect ratios up to this are left alone; beyond, elements are drawn back to it gently.
 const FREE_ASPECT: f64 = 6.0;
 
@@ -83,7 +90,7 @@ struct LocalElement {
 pub(super) struct Problem<'a> {
     boundary: &'a Boundary,
     reference: &'a Reference,
-    tolerance: Option<BoundaryTolerance>,
+    tolerance: Option<&'a BoundaryError>,
     vertices: Vec<LocalVertex>,
     edges: Vec<LocalEdge>,
     elements: Vec<LocalElement>,
@@ -100,13 +107,31 @@ pub(super) struct Problem<'a> {
     pub least: f64,
 }
 
+/// Calls a method that is generic in the number of samples.
+macro_rules! for_samples {
+    ($problem:expr, $method:ident) => {
+        match $problem.reference.samples.len() {
+            3 => $problem.$method::<3>(),
+            4 => $problem.$method::<4>(),
+            5 => $problem.$method::<5>(),
+            6 => $problem.$method::<6>(),
+            7 => $problem.$method::<7>(),
+            8 => $problem.$method::<8>(),
+            9 => $problem.$method::<9>(),
+            10 => $problem.$method::<10>(),
+            11 => $problem.$method::<11>(),
+            _ => $problem.$method::<MAX_SAMPLES>(),
+        }
+    };
+}
+
 impl<'a> Problem<'a> {
     /// Quads `active` (all if `None`) of `mesh`: what has a neighbour outside stays fixed; so do
     /// boundary vertices unless `slide`.
     pub fn new(
         boundary: &'a Boundary,
         reference: &'a Reference,
-        tolerance: Option<BoundaryTolerance>,
+        tolerance: Option<&'a BoundaryError>,
         mesh: &QuadMesh,
         active: Option<&[u32]>,
         slide: bool,
@@ -179,7 +204,11 @@ impl<'a> Problem<'a> {
             }
             let starts = [quad[0], quad[1], quad[3], quad[0]];
             let flips = [0, 1, 2, 3].map(|i| mesh.edges[global[i] as usize].vertices[0] != starts[i]);
-            problem.elements.push(LocalElement { edges, flips, target: Target { ratio: 1.0, area: 1.0 } });
+            problem.elements.push(LocalElement {
+                edges,
+                flips,
+                target: Target { ratio: 1.0, area: 1.0, evenness: EVENNESS },
+            });
         }
         let k4 = 4 * reference.samples.len();
         problem.samples = vec![0.0; problem.edges.len() * k4];
@@ -388,7 +417,7 @@ impl<'a> Problem<'a> {
             let area = area(element, &self.samples, self.reference.samples.len());
             // Inverted elements have no area worth keeping.
             let area = if area > 0.2 * l1 * l2 { area } else { l1 * l2 };
-            element.target = Target { ratio: tame(l2 / l1), area };
+            element.target = Target { ratio: tame(l2 / l1), area, evenness: EVENNESS };
             for (i, e) in element.edges.iter().enumerate() {
                 let width = if i % 2 == 0 { l2 } else { l1 };
                 widths[*e as usize] += 1.0 / (width * width);
@@ -422,11 +451,12 @@ impl<'a> Problem<'a> {
                 }
             }
         }
+        self.refresh_evenness();
         self.refresh_limits();
     }
 
-    /// Limits of the boundary errors. The barrier is of the L2 norm; for another norm its limit is
-    /// scaled by the present ratio of the two.
+    /// Limits of the boundary errors. The barrier's own error is of the L2 norm and by few points;
+    /// its limit is scaled by the present ratio of that to the true one.
     fn refresh_limits(&mut self) {
         let Some(tolerance) = self.tolerance else { return };
         let (x, n) = (&self.unknowns, self.reference.nodes.len());
@@ -438,16 +468,19 @@ impl<'a> Problem<'a> {
                 *length = end - start;
                 let own = &self.nodes[*nodes as usize..*nodes as usize + n];
                 let chain = &self.boundary.chains[*chain as usize];
-                let in_norm = |norm| error(self.reference, chain, start, *length, own, norm);
-                let now = in_norm(tolerance.norm);
-                let wanted = MARGIN * tolerance.value;
-                (*limit, *weight) = if now < 0.99 * wanted {
+                let now = tolerance.of_chain(chain, start, end);
+                let value = tolerance.tolerance.value;
+                let wanted = MARGIN * value;
+                (*limit, *weight) = if now < CLOSE * wanted {
                     (wanted, TOLERANCE_WEIGHT)
+                } else if now < CLOSE * value {
+                    (value, RESCUE_WEIGHT)
                 } else {
                     (ROOM * now, RESCUE_WEIGHT)
                 };
-                if tolerance.norm != Norm::L2 && now > 1e-3 * wanted {
-                    *limit *= in_norm(Norm::L2) / now;
+                if now > 1e-3 * wanted {
+                    let seen = squared_error(self.reference, chain, start, *length, own).value.sqrt();
+                    *limit *= seen / now;
                 }
             }
         }
@@ -456,15 +489,12 @@ impl<'a> Problem<'a> {
     /// Largest error of the boundary edges that move, divided by the tolerance.
     pub fn error_ratio(&self) -> f64 {
         let Some(tolerance) = self.tolerance else { return 0.0 };
-        let n = self.reference.nodes.len();
         let mut most = 0.0f64;
         for edge in self.edges.iter().filter(|e| e.moves) {
-            if let Shape::Boundary { chain, unknowns, offsets, nodes, .. } = edge.shape {
+            if let Shape::Boundary { chain, unknowns, offsets, .. } = edge.shape {
                 let [start, end] = arc_lengths(&self.unknowns, unknowns, offsets);
-                let own = &self.nodes[nodes as usize..nodes as usize + n];
-                let chain = &self.boundary.chains[chain as usize];
-                let now = error(self.reference, chain, start, end - start, own, tolerance.norm);
-                most = most.max(now / tolerance.value);
+                let now = tolerance.of_chain(&self.boundary.chains[chain as usize], start, end);
+                most = most.max(now / tolerance.tolerance.value);
             }
         }
         most
@@ -525,6 +555,28 @@ impl<'a> Problem<'a> {
                     target.span = Some(Span { chain, start: from, end: from + (end - start) });
                 }
             }
+        }
+    }
+
+    fn refresh_evenness(&mut self) {
+        for_samples!(self, weigh_elements)
+    }
+
+    /// Gives uneven elements more weight on evenness.
+    fn weigh_elements<const K: usize>(&mut self) {
+        let mut t = [0.0; K];
+        t.copy_from_slice(&self.reference.samples);
+        let mut sides = Sides::<K>::ZERO;
+        for element in &mut self.elements {
+            for side in 0..4 {
+                let at = element.edges[side] as usize * 4 * K;
+                sides.read(side, &self.samples[at..at + 4 * K], element.flips[side]);
+            }
+            let (least, most) = kernel::jacobians(&t, &sides);
+            let wanted = EVENNESS * UNEVEN * most / least;
+            // Inverted elements have other worries.
+            let wanted = if least > 0.0 { wanted } else { EVENNESS };
+            element.target.evenness = wanted.clamp(EVENNESS, MOST_EVENNESS);
         }
     }
 
@@ -676,18 +728,7 @@ impl Objective for Problem<'_> {
             return f64::INFINITY;
         }
         self.adjoint.fill(0.0);
-        let energy = match self.reference.samples.len() {
-            3 => self.evaluate_elements::<3>(),
-            4 => self.evaluate_elements::<4>(),
-            5 => self.evaluate_elements::<5>(),
-            6 => self.evaluate_elements::<6>(),
-            7 => self.evaluate_elements::<7>(),
-            8 => self.evaluate_elements::<8>(),
-            9 => self.evaluate_elements::<9>(),
-            10 => self.evaluate_elements::<10>(),
-            11 => self.evaluate_elements::<11>(),
-            _ => self.evaluate_elements::<MAX_SAMPLES>(),
-        };
+        let energy = for_samples!(self, evaluate_elements);
         if !energy.is_finite() {
             return f64::INFINITY;
         }
@@ -704,7 +745,8 @@ impl Objective for Problem<'_> {
 mod tests {
     use super::*;
     use crate::domain::{Chain, Frame, Sample};
-    use crate::mesh::Vertex;
+    use crate::mesh::{BoundaryTolerance, Vertex};
+    use crate::options::Norm;
     use std::collections::HashMap;
 
     /// An ellipse of five quads: no symmetry left, bubbles on all interior edges.
@@ -761,8 +803,8 @@ mod tests {
     fn gradients_agree_with_differences() {
         let (boundary, mesh) = example();
         let reference = Reference::for_energy(5);
-        let tolerance = Some(BoundaryTolerance { norm: Norm::L2, order: 5, value: 1e-3 });
-        let mut problem = Problem::new(&boundary, &reference, tolerance, &mesh, None, true);
+        let error = BoundaryError::new(BoundaryTolerance { norm: Norm::L2, order: 5, value: 1e-3 });
+        let mut problem = Problem::new(&boundary, &reference, Some(&error), &mesh, None, true);
         let x = problem.unknowns.clone();
         let mut gradient = vec![0.0; x.len()];
         let mut scrap = gradient.clone();
