@@ -187,6 +187,22 @@ fn mesh_picture_shows_elements_and_irregular_vertices() {
     assert!(picture.contains("5 elements of order 5"));
 }
 
+/// The points of a path of one absolute move and relative lines.
+fn corners(data: &str) -> Vec<(f64, f64)> {
+    let numbers = |step: &str| -> Vec<f64> {
+        step.replace('-', " -").split_whitespace().map(|x| x.parse().unwrap()).collect()
+    };
+    let mut at = (0.0, 0.0);
+    let steps = data.trim_start_matches('M').trim_end_matches('Z').split('l');
+    steps
+        .map(|step| {
+            let d = numbers(step);
+            at = (at.0 + d[0], at.1 + d[1]);
+            at
+        })
+        .collect()
+}
+
 #[test]
 fn y_points_up() {
     // A triangle-like grid that is wider at its upper end.
@@ -194,9 +210,7 @@ fn y_points_up() {
     let picture = svg::mesh(&mesh);
     let document = roxmltree::Document::parse(&picture).unwrap();
     let path = document.descendants().find(|n| n.has_tag_name("path")).unwrap();
-    let data = path.attribute("d").unwrap().trim_end_matches('Z').replace(['M', 'L'], " ");
-    let numbers: Vec<f64> = data.split_whitespace().map(|x| x.parse().unwrap()).collect();
-    let points: Vec<(f64, f64)> = numbers.chunks(2).map(|p| (p[0], p[1])).collect();
+    let points = corners(path.attribute("d").unwrap());
     let (bottom, top) = (&points[0..2], &points[2..4]);
     assert!(bottom[0].1 > top[0].1, "SVG's y grows downwards: {points:?}");
     assert!((top[0].0 - top[1].0).abs() > (bottom[0].0 - bottom[1].0).abs());

@@ -169,7 +169,7 @@ fn options(arguments: &MeshArguments) -> Result<Options> {
         norm: arguments.norm.into(),
         field: arguments.field.into(),
         max_element_size: arguments.max_size,
-        progress: progress::terminal(),
+        progress: if arguments.log_stages { progress::log() } else { progress::terminal() },
         ..Options::default()
     };
     if let Some(expression) = &arguments.size {

@@ -1,7 +1,8 @@
 //! The finished mesh: curved edges, elements tinted by quality, irregular vertices marked.
 
-use super::canvas::{Canvas, Mark, Path, Stroke};
+use super::canvas::{Canvas, Mark, Stroke};
 use super::palette::{quality_tint, valence_color, BOUNDARY};
+use super::path::Path;
 use crate::mesh::HighOrderMesh;
 use crate::numerics::interpolation::Interpolation;
 use crate::numerics::{Point, Vector, NONE};

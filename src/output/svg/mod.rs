@@ -4,7 +4,9 @@ mod canvas;
 mod colouring;
 mod mesh;
 mod palette;
+mod path;
 mod stages;
+mod trails;
 
 use crate::mesh::HighOrderMesh;
 use crate::numerics::Point;
