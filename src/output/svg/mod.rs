@@ -59,7 +59,8 @@ impl Picture {
 }
 
 /// The mesh: elements tinted by their scaled Jacobian, the boundary thicker, irregular interior
-/// vertices marked by polygons of as many corners as their valence.
+/// vertices marked by polygons of as many corners as their valence, irregular boundary vertices by
+/// squares.
 pub fn mesh(mesh: &HighOrderMesh) -> String {
     mesh::draw(mesh, canvas::SINGLE).finish()
 }
