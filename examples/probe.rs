@@ -11,6 +11,7 @@ fn main() {
             }
         };
         let mut o = Options::default();
+        if std::env::var("LAYOUT").is_ok() { o.progress = progress::Progress::new(|s, _| s != progress::Stage::Refine) }
         if path.contains("Gingerbread") {
             o.tolerance = options::Tolerance::Absolute(1e-2)
         }

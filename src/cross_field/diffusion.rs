@@ -1,6 +1,7 @@
 //! The finite element solve for u = (cos 4θ, sin 4θ).
 
 use super::border::Border;
+use super::thickness::thickness;
 use super::tips::Held;
 use crate::base_mesh::Triangulation;
 use crate::error::{Error, Result};
@@ -11,21 +12,18 @@ use crate::options::FieldMethod;
 
 /// Stiffness and lumped mass of linear elements.
 struct Elements {
-    /// Entries (i, j, K_ij) with i > j off the diagonal, and the diagonal.
+    /// Entries (i, j, K_ij) with i > j off the diagonal, and the diagonal; nine in a row of each triangle.
     stiffness: Vec<Entry>,
     mass: Vec<f64>,
-    area: f64,
 }
 
 impl Elements {
     fn new(mesh: &Triangulation) -> Elements {
         let mut stiffness = Vec::with_capacity(9 * mesh.triangles.len());
         let mut mass = vec![0.0; mesh.vertices.len()];
-        let mut total = 0.0;
         for corners in &mesh.triangles {
             let p = corners.map(|v| mesh.vertices[v as usize].point);
             let double = cross(p[1] - p[0], p[2] - p[0]);
-            total += 0.5 * double;
             for i in 0..3 {
                 let (a, b) = (corners[(i + 1) % 3] as usize, corners[(i + 2) % 3] as usize);
                 mass[corners[i] as usize] += double / 6.0;
@@ -36,15 +34,27 @@ impl Elements {
                 stiffness.extend([(a, a, weight), (b, b, weight), (a.max(b), a.min(b), -weight)]);
             }
         }
-        Elements { stiffness, mass, area: total }
+        Elements { stiffness, mass }
     }
 }
 
-/// A linear system on the inner vertices: `mass_share` M + `time` K.
+impl Elements {
+    /// The same with the stiffness of each triangle multiplied by its diffusion time.
+    fn with_times(&self, times: &[f64]) -> Elements {
+        let scaled = |(chunk, time): (&[Entry], &f64)| {
+            chunk.iter().map(|&(i, j, k)| (i, j, k * time)).collect::<Vec<_>>()
+        };
+        Elements {
+            stiffness: self.stiffness.chunks(9).zip(times).flat_map(scaled).collect(),
+            mass: self.mass.clone(),
+        }
+    }
+}
+
+/// A linear system on the inner vertices: `mass_share` M + K.
 struct System<'a> {
     elements: &'a Elements,
     mass_share: f64,
-    time: f64,
     unknown: &'a [u32],
     /// Vertex of each unknown.
     inner: &'a [u32],
@@ -52,24 +62,18 @@ struct System<'a> {
 }
 
 impl<'a> System<'a> {
-    fn new(
-        elements: &'a Elements,
-        mass_share: f64,
-        time: f64,
-        unknown: &'a [u32],
-        inner: &'a [u32],
-    ) -> Result<Self> {
+    fn new(elements: &'a Elements, mass_share: f64, unknown: &'a [u32], inner: &'a [u32]) -> Result<Self> {
         let mut entries: Vec<Entry> = Vec::with_capacity(elements.stiffness.len() + inner.len());
         for &(a, b, k) in &elements.stiffness {
             let (i, j) = (unknown[a], unknown[b]);
             if i != NONE && j != NONE {
-                entries.push((i.max(j) as usize, i.min(j) as usize, time * k));
+                entries.push((i.max(j) as usize, i.min(j) as usize, k));
             }
         }
         let diagonal = inner.iter().enumerate().map(|(i, &v)| (i, i, mass_share * elements.mass[v as usize]));
         entries.extend(diagonal);
         let factors = Cholesky::new(inner.len(), &entries).map_err(linear)?;
-        Ok(System { elements, mass_share, time, unknown, inner, factors })
+        Ok(System { elements, mass_share, unknown, inner, factors })
     }
 
     /// Solves with the border's values in `u` fixed and M u as right-hand side; replaces the inner values.
@@ -83,7 +87,7 @@ impl<'a> System<'a> {
         for &(a, b, k) in &self.elements.stiffness {
             for (row, column) in [(a, b), (b, a)] {
                 if self.unknown[row] != NONE && self.unknown[column] == NONE {
-                    let known = scaled(u[column], self.time * k);
+                    let known = scaled(u[column], k);
                     let r = &mut right[self.unknown[row] as usize];
                     *r = [r[0] - known[0], r[1] - known[1]];
                 }
@@ -128,10 +132,17 @@ pub(super) fn solve(
         }
     }
     let elements = Elements::new(mesh);
-    System::new(&elements, 0.0, 1.0, &unknown, &inner)?.advance(&mut u)?;
+    System::new(&elements, 0.0, &unknown, &inner)?.advance(&mut u)?;
     if method == FieldMethod::Diffused {
         renormalise(&mut u, &inner);
-        let step = System::new(&elements, 1.0, DIFFUSION_TIME * elements.area, &unknown, &inner)?;
+        // A step longer than a thin part is wide would only bring back the harmonic field there.
+        let thickness = thickness(mesh, border);
+        let time = |t: &[u32; 3]| {
+            let mean = t.iter().map(|&v| thickness[v as usize]).sum::<f64>() / 3.0;
+            DIFFUSION_TIME * mean * mean
+        };
+        let diffusing = elements.with_times(&mesh.triangles.iter().map(time).collect::<Vec<_>>());
+        let step = System::new(&diffusing, 1.0, &unknown, &inner)?;
         for _ in 0..DIFFUSION_STEPS {
             step.advance(&mut u)?;
             renormalise(&mut u, &inner);

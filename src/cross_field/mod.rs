@@ -16,6 +16,7 @@
 mod border;
 mod check;
 mod diffusion;
+mod thickness;
 mod tips;
 mod turning;
 

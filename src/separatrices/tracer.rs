@@ -171,7 +171,7 @@ impl<'a> Tracer<'a> {
     pub fn launch_all(&mut self) -> Result<()> {
         for (i, s) in self.singularities.iter().enumerate() {
             for (j, &(edge, share)) in s.ports.iter().enumerate() {
-                self.launch_port(i as u32, j as u8, s, Position { edge: edge as usize, share })?;
+                self.launch_port(i as u32, j as u8, s, Position { edge: edge as usize, share });
             }
         }
         for (i, c) in self.corners.iter().enumerate() {
@@ -188,22 +188,26 @@ impl<'a> Tracer<'a> {
         self.traces.push(trace);
     }
 
-    fn launch_port(&mut self, singularity: u32, port: u8, s: &Singularity, to: Position) -> Result<()> {
+    fn launch_port(&mut self, singularity: u32, port: u8, s: &Singularity, to: Position) {
         let t = s.triangle;
         let exit = self.stream.point(t, to);
         let out = exit - s.point;
         let branch = self.stream.branch(t, to, out.y.atan2(out.x));
-        let (triangle, at, branch) = self
-            .stream
-            .across(t, to, branch)
-            .ok_or_else(|| self.failure("a singular triangle lies at the border", s.point))?;
         let id = self.traces.len() as u32;
         let chord = Chord { trace: id, step: 0, from: to, to, course: Course::Port, family: 0, end: None };
         self.chords[t as usize].push(chord);
         let from = TraceEnd::Singularity { singularity, port };
-        let (points, length) = (vec![s.point, exit], out.norm());
-        self.push(Trace { from, to: None, points, length, triangle, at, branch, stops: Vec::new() });
-        Ok(())
+        let (points, length, stops) = (vec![s.point, exit], out.norm(), Vec::new());
+        match self.stream.across(t, to, branch) {
+            Some((triangle, at, branch)) => {
+                self.push(Trace { from, to: None, points, length, triangle, at, branch, stops });
+            }
+            // The singular triangle lies at the border: the separatrix ends there at once.
+            None => {
+                let end = Some(self.border_end(t, to));
+                self.traces.push(Trace { from, to: end, points, length, triangle: t, at: to, branch, stops });
+            }
+        }
     }
 
     /// Ray `ray` of a corner: at k θ / n of the interior angle, in the fan's triangle that holds it.
@@ -332,6 +336,7 @@ impl<'a> Tracer<'a> {
                 s.ports.iter().map(|&(e, share)| Position { edge: e as usize, share }).collect();
             self.stream.through_singular(t, &ports, from, branch, s.point)
         };
+        if passage.is_none() { eprintln!("DBG t {t} from {from:?} branch {branch} singular {singular} tri {:?} cross {:?} pts {:?}", self.stream.mesh.neighbors[t as usize], self.stream.field.triangles[t as usize], [0,1,2].map(|i| self.stream.corner(t,i))); }
         let (to, ccw) = passage.ok_or_else(|| self.failure("the field leads nowhere in a triangle", here))?;
         let family = branch.rem_euclid(2);
         let mut chord = Chord { trace: id, step, from, to, course: Course::Through(ccw), family, end: None };
