@@ -23,3 +23,8 @@ pub mod statistics;
 pub use error::{Error, Result};
 pub use generate::generate;
 pub use options::Options;
+
+/// The examples of the README run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

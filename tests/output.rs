@@ -60,13 +60,13 @@ fn vtu_nodes_are_equispaced_shared_and_in_order() {
         assert_eq!(file.types, vec![70; faces]);
         let list = vtk_order(order);
         let mut used = vec![false; file.points.len()];
-        for e in 0..faces {
+        for (e, corner) in corners.iter().enumerate() {
             let cell = &file.connectivity[e * list.len()..(e + 1) * list.len()];
             assert_eq!(file.offsets[e], ((e + 1) * list.len()) as i64);
             for (&index, &(i, j)) in cell.iter().zip(&list) {
                 used[index as usize] = true;
                 let share = |k: usize| k as f64 / order as f64;
-                let (x, y) = corners[e].at(share(i), share(j));
+                let (x, y) = corner.at(share(i), share(j));
                 let (expected, found) = (map(x, y), file.points[index as usize]);
                 assert!(
                     (found[0] - expected.x).hypot(found[1] - expected.y) < 1e-12 && found[2] == 0.0,
@@ -180,11 +180,45 @@ fn mesh_picture_shows_elements_and_irregular_vertices() {
     // Six elements, interior edges, boundary edges.
     assert_eq!(count(&picture, "path"), 6 + 2);
     assert_eq!(count(&picture, "polygon"), 0, "a regular grid has no irregular vertex");
-
+    let square = |e: usize, a: f64, b: f64| Point::new(a + f64::from(e == 1), b + f64::from(e == 2));
+    let points = [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1], [0, 2], [1, 2]];
+    let points = points.map(|p| Point::new(f64::from(p[0]), f64::from(p[1])));
+    let elements = vec![[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6]];
+    let shape = grid::assemble(2, points.to_vec(), elements, |_, _| 0, square);
+    assert_eq!(count(&svg::mesh(&shape), "polygon"), 0, "three elements are right at a corner of 270°");
+    // Cut into a single element, a corner has one element where two belong.
+    let dart = [[0.0, 0.0], [2.0, 0.1], [1.1, 1.1], [0.1, 2.0]].map(Point::from);
+    let flat = move |_: usize, a: f64, b: f64| {
+        let mix = |c: usize| {
+            (1.0 - a) * (1.0 - b) * dart[0][c]
+                + a * (1.0 - b) * dart[1][c]
+                + a * b * dart[2][c]
+                + (1.0 - a) * b * dart[3][c]
+        };
+        Point::new(mix(0), mix(1))
+    };
+    let shape = grid::assemble(2, dart.to_vec(), vec![[0, 1, 2, 3]], |_, _| 0, flat);
+    assert_eq!(count(&svg::mesh(&shape), "polygon"), 1, "one element at a corner of 174°");
     let disc = disc::mesh(5);
     let picture = svg::mesh(&disc);
     assert_eq!(count(&picture, "polygon"), 4, "the disc's four three-valent vertices");
     assert!(picture.contains("5 elements of order 5"));
+}
+
+/// The points of a path of one absolute move and relative lines.
+fn corners(data: &str) -> Vec<(f64, f64)> {
+    let numbers = |step: &str| -> Vec<f64> {
+        step.replace('-', " -").split_whitespace().map(|x| x.parse().unwrap()).collect()
+    };
+    let mut at = (0.0, 0.0);
+    let steps = data.trim_start_matches('M').trim_end_matches('Z').split('l');
+    steps
+        .map(|step| {
+            let d = numbers(step);
+            at = (at.0 + d[0], at.1 + d[1]);
+            at
+        })
+        .collect()
 }
 
 #[test]
@@ -194,9 +228,7 @@ fn y_points_up() {
     let picture = svg::mesh(&mesh);
     let document = roxmltree::Document::parse(&picture).unwrap();
     let path = document.descendants().find(|n| n.has_tag_name("path")).unwrap();
-    let data = path.attribute("d").unwrap().trim_end_matches('Z').replace(['M', 'L'], " ");
-    let numbers: Vec<f64> = data.split_whitespace().map(|x| x.parse().unwrap()).collect();
-    let points: Vec<(f64, f64)> = numbers.chunks(2).map(|p| (p[0], p[1])).collect();
+    let points = corners(path.attribute("d").unwrap());
     let (bottom, top) = (&points[0..2], &points[2..4]);
     assert!(bottom[0].1 > top[0].1, "SVG's y grows downwards: {points:?}");
     assert!((top[0].0 - top[1].0).abs() > (bottom[0].0 - bottom[1].0).abs());

@@ -68,6 +68,9 @@ pub struct MeshArguments {
     /// File for the statistics (JSON), also on failure
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
+    /// Write a line to standard error at the beginning of each stage
+    #[arg(long, hide = true)]
+    pub log_stages: bool,
 }
 
 #[derive(Args)]

@@ -26,6 +26,20 @@ pub fn terminal() -> Progress {
     })
 }
 
+/// A progress callback that writes a stage's name to standard error when it begins: what a process that
+/// had to be ended was doing last.
+pub fn log() -> Progress {
+    let last: Mutex<Option<Stage>> = Mutex::new(None);
+    Progress::new(move |stage, _| {
+        if let Ok(mut last) = last.lock() {
+            if last.replace(stage) != Some(stage) {
+                let _ = writeln!(stderr(), "{}", stage.name());
+            }
+        }
+        true
+    })
+}
+
 /// Takes the line away.
 pub fn clear() {
     if stderr().is_terminal() {

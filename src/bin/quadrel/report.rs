@@ -104,7 +104,7 @@ fn quality(text: &mut String, statistics: &Statistics) {
         );
     }
     if let Some(irregular) = statistics.irregular {
-        let expected = statistics.irregular_expected.map(|n| format!(" (about {n} are unavoidable)"));
+        let expected = statistics.irregular_expected.map(|n| format!(" (the shape lets expect about {n})"));
         let _ = writeln!(
             text,
             "irregular        {} inside, {} on the boundary{}",

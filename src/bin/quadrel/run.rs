@@ -77,9 +77,10 @@ fn make(arguments: &MeshArguments, stages: &mut Stages) -> std::result::Result<M
     complete(&mut options, arguments, &model);
     let title = report::title(&model.name, &options);
     let result = quadrel::generate(&model.domain, &options, stages);
+    // The reader's warnings first; the domain may repeat them.
     let mut warnings = model.warnings;
-    warnings.append(&mut stages.warnings);
-    warnings.dedup();
+    let later = std::mem::take(&mut stages.warnings);
+    warnings.extend(later.into_iter().filter(|w| !warnings.contains(w)).collect::<Vec<_>>());
     stages.warnings = warnings;
     Ok(Made { mesh: result?, files, title })
 }
@@ -169,7 +170,7 @@ fn options(arguments: &MeshArguments) -> Result<Options> {
         norm: arguments.norm.into(),
         field: arguments.field.into(),
         max_element_size: arguments.max_size,
-        progress: progress::terminal(),
+        progress: if arguments.log_stages { progress::log() } else { progress::terminal() },
         ..Options::default()
     };
     if let Some(expression) = &arguments.size {

@@ -1,6 +1,7 @@
 //! A drawing surface: the plane's coordinates to SVG text.
 
-use crate::numerics::{cross, Point, Vector};
+use super::path::Path;
+use crate::numerics::Point;
 use std::fmt::Write;
 
 /// Width in SVG units of a picture of its own; the height follows the domain, within limits.
@@ -17,8 +18,6 @@ const CAPTION: f64 = 28.0;
 /// Size of text, and a character's width in sizes, with some margin.
 const FONT: f64 = 16.0;
 const CHARACTER: f64 = 0.56;
-/// Deviation in SVG units that the eye does not see.
-const TOLERANCE: f64 = 0.12;
 
 /// Looks of a line.
 #[derive(Clone, Copy)]
@@ -41,7 +40,7 @@ pub enum Mark {
 pub struct Canvas {
     lo: Point,
     hi: Point,
-    scale: f64,
+    pub(super) scale: f64,
     body: String,
     caption: String,
 }
@@ -89,7 +88,7 @@ impl Canvas {
     pub fn lines(&mut self, stroke: Stroke, draw: impl FnOnce(&mut Path)) {
         let mut path = Path::new(self);
         draw(&mut path);
-        let data = path.data;
+        let data = path.finish();
         if !data.is_empty() {
             let _ = writeln!(
                 self.body,
@@ -104,7 +103,7 @@ impl Canvas {
     pub fn area(&mut self, fill: &str, draw: impl FnOnce(&mut Path)) {
         let mut path = Path::new(self);
         draw(&mut path);
-        let data = path.data;
+        let data = path.finish();
         if !data.is_empty() {
             let _ = writeln!(self.body, "<path d=\"{data}Z\" fill=\"{fill}\"/>");
         }
@@ -170,7 +169,8 @@ impl Canvas {
         document(width, height, &self.content())
     }
 
-    fn place(&self, p: Point) -> (f64, f64) {
+    /// A point of the plane in SVG units.
+    pub(super) fn place(&self, p: Point) -> (f64, f64) {
         let middle = 0.5 * (self.lo.x + self.hi.x);
         let (x, y) = ((p.x - middle) * self.scale, (self.hi.y - p.y) * self.scale);
         (x + 0.5 * self.size().0, y + MARGIN)
@@ -209,130 +209,6 @@ fn document(width: f64, height: f64, content: &str) -> String {
          stroke-linejoin=\"round\" stroke-linecap=\"round\">\n\
          <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{content}</svg>\n"
     )
-}
-
-/// Path data in the making.
-pub struct Path<'a> {
-    canvas: &'a Canvas,
-    data: String,
-    pen: Option<(f64, f64)>,
-}
-
-impl<'a> Path<'a> {
-    fn new(canvas: &'a Canvas) -> Self {
-        Path { canvas, data: String::new(), pen: None }
-    }
-
-    /// Moves without drawing; nothing happens where the pen is there already.
-    pub fn move_to(&mut self, p: Point) {
-        let to = self.rounded(p);
-        if self.pen != Some(to) {
-            let _ = write!(self.data, "M{} {}", number(to.0), number(to.1));
-            self.pen = Some(to);
-        }
-    }
-
-    /// A straight line.
-    pub fn line_to(&mut self, p: Point) {
-        let to = self.rounded(p);
-        if self.pen != Some(to) {
-            let _ = write!(self.data, "L{} {}", number(to.0), number(to.1));
-            self.pen = Some(to);
-        }
-    }
-
-    /// A cubic from where the pen is to `p`, with the derivatives at its ends over a parameter in [0, 1].
-    pub fn hermite_to(&mut self, from: Point, leaving: Vector, p: Point, arriving: Vector) {
-        let start = self.rounded(from);
-        let (a, b, to) =
-            (self.rounded(from + leaving / 3.0), self.rounded(p - arriving / 3.0), self.rounded(p));
-        if off_line(start, to, a).max(off_line(start, to, b)) < TOLERANCE {
-            return self.line_to(p);
-        }
-        let mut data = std::mem::take(&mut self.data);
-        let _ = write!(data, "C{} {}", number(a.0), number(a.1));
-        for (x, y) in [b, to] {
-            let _ = write!(data, " {} {}", number(x), number(y));
-        }
-        self.data = data;
-        self.pen = Some(to);
-    }
-
-    /// A polyline that starts with a move; points that the eye does not miss are left out.
-    pub fn polyline(&mut self, points: impl IntoIterator<Item = Point>) {
-        let mut points = points.into_iter();
-        let Some(mut anchor) = points.next() else { return };
-        self.move_to(anchor);
-        // The directions from the anchor that pass all points skipped so far within the tolerance.
-        let mut skipped: Option<Point> = None;
-        let mut cone: Option<Cone> = None;
-        for p in points {
-            cone = match (cone, skipped) {
-                (Some(cone), Some(last)) => match self.cone(anchor, p).within(&cone) {
-                    Some(narrower) => Some(narrower),
-                    None => {
-                        self.line_to(last);
-                        anchor = last;
-                        Some(self.cone(anchor, p))
-                    }
-                },
-                _ => Some(self.cone(anchor, p)),
-            };
-            skipped = Some(p);
-        }
-        if let Some(last) = skipped {
-            self.line_to(last);
-        }
-    }
-
-    /// The directions from `anchor` that pass `p` within the tolerance.
-    fn cone(&self, anchor: Point, p: Point) -> Cone {
-        let axis = (p - anchor) * self.canvas.scale;
-        let distance = axis.norm();
-        let reach = if distance > TOLERANCE { (TOLERANCE / distance).asin() } else { std::f64::consts::PI };
-        Cone { axis, low: -reach, high: reach, distance }
-    }
-
-    /// SVG coordinates to a hundredth.
-    fn rounded(&self, p: Point) -> (f64, f64) {
-        let (x, y) = self.canvas.place(p);
-        let round = |v: f64| (v * 100.0).round() / 100.0;
-        (round(x), round(y))
-    }
-}
-
-/// Directions in the plane: those whose angle from `axis` lies between `low` and `high`.
-#[derive(Clone, Copy)]
-struct Cone {
-    axis: Vector,
-    low: f64,
-    high: f64,
-    /// How far away the point is that it was last narrowed for.
-    distance: f64,
-}
-
-impl Cone {
-    /// What of it lies in `outer`; `None` if its own axis does not, or if the line turns back.
-    fn within(&self, outer: &Cone) -> Option<Cone> {
-        let turn = cross(outer.axis, self.axis).atan2(outer.axis.dot(&self.axis));
-        let inside = (outer.low..=outer.high).contains(&turn) && self.distance + TOLERANCE >= outer.distance;
-        inside.then(|| Cone {
-            axis: outer.axis,
-            low: outer.low.max(turn + self.low),
-            high: outer.high.min(turn + self.high),
-            distance: self.distance.max(outer.distance),
-        })
-    }
-}
-
-/// Distance of `p` from the line through `a` and `b` (from `a` if they are one).
-fn off_line(a: (f64, f64), b: (f64, f64), p: (f64, f64)) -> f64 {
-    let (d, e) = (Vector::new(b.0 - a.0, b.1 - a.1), Vector::new(p.0 - a.0, p.1 - a.1));
-    if d.norm() > 0.0 {
-        cross(d, e).abs() / d.norm()
-    } else {
-        e.norm()
-    }
 }
 
 /// A number with at most two decimals and nothing needless.

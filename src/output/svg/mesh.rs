@@ -1,10 +1,11 @@
 //! The finished mesh: curved edges, elements tinted by quality, irregular vertices marked.
 
-use super::canvas::{Canvas, Mark, Path, Stroke};
+use super::canvas::{Canvas, Mark, Stroke};
 use super::palette::{quality_tint, valence_color, BOUNDARY};
-use crate::mesh::HighOrderMesh;
+use super::path::Path;
+use crate::mesh::{quads_by_table, HighOrderMesh};
 use crate::numerics::interpolation::Interpolation;
-use crate::numerics::{Point, Vector, NONE};
+use crate::numerics::{cross, Point, Vector, NONE};
 use nalgebra::DMatrix;
 
 /// Draws the mesh on a canvas `width` wide.
@@ -12,7 +13,7 @@ pub fn draw(mesh: &HighOrderMesh, width: f64) -> Canvas {
     let mut canvas = Canvas::around(mesh.nodes.iter().copied(), width);
     let curves = EdgeCurves::new(mesh);
     let typical = typical_edge(mesh) / canvas.unit();
-    let line = (0.025 * typical).clamp(0.25, 1.1);
+    let line = (0.03 * typical).clamp(0.3, 1.2);
 
     for (e, edges) in mesh.element_edges.iter().enumerate() {
         let worst = mesh.scaled_jacobian.get(e).copied().unwrap_or(1.0);
@@ -36,8 +37,15 @@ pub fn draw(mesh: &HighOrderMesh, width: f64) -> Canvas {
     });
     let radius = (0.13 * typical).clamp(2.4, 7.0);
     for (v, valence) in irregular_vertices(mesh) {
-        let corners = valence.max(3);
-        canvas.mark(mesh.vertices[v], Mark::Polygon(corners), radius, valence_color(valence));
+        canvas.mark(mesh.vertices[v], Mark::Polygon(valence.max(3)), radius, valence_color(valence));
+    }
+    for (v, excess) in irregular_border(mesh, &curves) {
+        canvas.mark(
+            mesh.vertices[v],
+            Mark::Polygon(4),
+            0.8 * radius,
+            valence_color(4_usize.saturating_add_signed(excess)),
+        );
     }
     let worst = mesh.scaled_jacobian.iter().copied().fold(f64::INFINITY, f64::min);
     canvas.caption(format!(
@@ -61,6 +69,38 @@ fn irregular_vertices(mesh: &HighOrderMesh) -> Vec<(usize, usize)> {
     }
     valence.into_iter().enumerate().filter(|(_, n)| *n != 4).collect()
 }
+
+/// Border vertices whose number of elements is not Table 1's for the angle there, with the excess.
+fn irregular_border(mesh: &HighOrderMesh, curves: &EdgeCurves) -> Vec<(usize, isize)> {
+    let mut border = vec![false; mesh.vertices.len()];
+    for edge in mesh.edges.iter().filter(|e| e.elements.contains(&NONE)) {
+        edge.vertices.iter().for_each(|v| border[*v as usize] = true);
+    }
+    let mut at = vec![(0, 0.0); mesh.vertices.len()];
+    for (e, corners) in mesh.elements.iter().enumerate() {
+        let leaving = |side: usize, corner: u32| {
+            let id = mesh.element_edges[e][side] as usize;
+            curves.leaving(id, mesh.edges[id].vertices[0] == corner)
+        };
+        for (side, corner) in corners.iter().enumerate() {
+            let (a, b) = (leaving(side, *corner), leaving((side + 3) % 4, *corner));
+            let (count, angle) = &mut at[*corner as usize];
+            *count += 1;
+            *angle += cross(a, b).atan2(a.dot(&b));
+        }
+    }
+    // The better of the table's answers for angles this close.
+    let excess = |(count, angle): (usize, f64)| {
+        let off = |angle: f64| count as isize - quads_by_table(angle) as isize;
+        [off(angle - TIE), off(angle + TIE)].into_iter().min_by_key(|x| x.abs()).unwrap_or(0)
+    };
+    let found = at.into_iter().map(excess).enumerate();
+    found.filter(|(v, excess)| border[*v] && *excess != 0).collect()
+}
+
+/// Angles read off a mesh, in radians, are this good; a corner this near to a tie of Table 1 is no
+/// irregular one.
+const TIE: f64 = 0.02;
 
 /// Median chord of the edges.
 fn typical_edge(mesh: &HighOrderMesh) -> f64 {
@@ -107,6 +147,13 @@ impl EdgeCurves {
             }
         }
         EdgeCurves { joints: all }
+    }
+
+    /// Derivative with which an edge leaves its first vertex, or (reversed) its second.
+    fn leaving(&self, edge: usize, first: bool) -> Vector {
+        let joints = &self.joints[edge];
+        let end = if first { joints.first() } else { joints.last() };
+        end.map_or(Vector::zeros(), |(_, d)| if first { *d } else { -*d })
     }
 
     /// Adds an edge to a path, after a move to its start if `begin`.

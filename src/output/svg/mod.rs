@@ -4,7 +4,9 @@ mod canvas;
 mod colouring;
 mod mesh;
 mod palette;
+mod path;
 mod stages;
+mod trails;
 
 use crate::mesh::HighOrderMesh;
 use crate::numerics::Point;
@@ -57,7 +59,8 @@ impl Picture {
 }
 
 /// The mesh: elements tinted by their scaled Jacobian, the boundary thicker, irregular interior
-/// vertices marked by polygons of as many corners as their valence.
+/// vertices marked by polygons of as many corners as their valence, irregular boundary vertices by
+/// squares.
 pub fn mesh(mesh: &HighOrderMesh) -> String {
     mesh::draw(mesh, canvas::SINGLE).finish()
 }

@@ -2,6 +2,7 @@
 
 use super::canvas::{Canvas, Mark, Stroke};
 use super::palette::{valence_color, BOUNDARY, CROSS, FAILURE, LINES, TRIANGLE};
+use super::trails::trails;
 use super::{colouring, Picture};
 use crate::domain::{Boundary, Frame, Span};
 use crate::numerics::{Point, Vector, NONE};
@@ -102,16 +103,18 @@ impl Drawing<'_> {
         let (frame, stages) = (self.frame, self.stages);
         let Some(base) = &stages.triangulation else { return };
         let thin = width * (4.0 / (base.triangles.len() as f64).sqrt().max(1.0) * 10.0).clamp(0.2, 0.9);
+        // Each edge once: from the triangle of lower number.
+        let mut edges = Vec::with_capacity(2 * base.triangles.len());
+        for (t, corners) in base.triangles.iter().enumerate() {
+            let own = |i: &usize| base.neighbors[t][*i] == NONE || t < base.neighbors[t][*i] as usize;
+            edges.extend((0..3).filter(own).map(|i| [corners[i], corners[(i + 1) % 3]]));
+        }
+        let point = |v: u32| frame.to_caller(base.vertices[v as usize].point);
         self.canvas.lines(Stroke { color: TRIANGLE, width: thin }, |path| {
-            for (t, corners) in base.triangles.iter().enumerate() {
-                for i in 0..3 {
-                    // Each edge once: from the triangle of lower number.
-                    let other = base.neighbors[t][i];
-                    if other == NONE || t < other as usize {
-                        let ends = [corners[i], corners[(i + 1) % 3]];
-                        path.polyline(ends.map(|v| frame.to_caller(base.vertices[v as usize].point)));
-                    }
-                }
+            path.coarse();
+            for trail in trails(base.vertices.len(), &edges) {
+                path.move_to(point(trail[0]));
+                trail[1..].iter().for_each(|v| path.line_to(point(*v)));
             }
         });
         self.boundary(1.6);
@@ -139,6 +142,7 @@ impl Drawing<'_> {
             }
         }
         self.canvas.lines(Stroke { color: CROSS, width: 1.0 }, |path| {
+            path.coarse();
             for (_, at, angle) in chosen.into_values() {
                 let a = Vector::new(angle.cos(), angle.sin()) * arm;
                 let b = Vector::new(-a.y, a.x);

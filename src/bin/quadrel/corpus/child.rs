@@ -73,7 +73,11 @@ impl<'a> Child<'a> {
         let written = fs::read_to_string(&statistics).ok().and_then(|t| serde_json::from_str(&t).ok());
         let value = match (ended, written) {
             (Ok(Some(_)), Some(value)) => value,
-            (Ok(None), _) => failed("timeout", format!("ended after {seconds:.0} s"), seconds),
+            (Ok(None), _) => {
+                let stage = last_words(&words).rsplit(' ').next().unwrap_or_default().to_string();
+                let stage = if stage.is_empty() { "start" } else { &stage };
+                failed("timeout", format!("ended after {seconds:.0} s in stage {stage}"), seconds)
+            }
             (Ok(Some(status)), None) => {
                 let words = last_words(&words);
                 let reason = if words.is_empty() { how(status) } else { format!("{}: {words}", how(status)) };
@@ -94,7 +98,7 @@ impl<'a> Child<'a> {
         words: &Path,
     ) -> std::io::Result<Option<ExitStatus>> {
         let mut command = Command::new(&self.program);
-        command.arg(path).args(&self.arguments).arg("--stats").arg(statistics);
+        command.arg(path).args(&self.arguments).arg("--log-stages").arg("--stats").arg(statistics);
         if let Some(folder) = &self.output {
             let name = relative.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let place = folder.join(relative);

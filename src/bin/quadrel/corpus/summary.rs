@@ -107,15 +107,24 @@ fn sums(text: &mut String, family: &str, rows: &[&Row], wide: usize) {
     );
 }
 
+/// The status; of runs that had to be ended with the stage they were in (other errors name theirs).
+fn kind(row: &Row) -> String {
+    let stage = row.statistics["message"].as_str().and_then(|m| m.split_once(" in stage "));
+    match stage {
+        Some((_, stage)) if row.status() == "timeout" => format!("timeout in {stage}"),
+        _ => row.status().to_string(),
+    }
+}
+
 /// How often each status occurred, with the first files.
 fn statuses(text: &mut String, rows: &[Row]) {
-    let mut by_status: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
+    let mut by_status: BTreeMap<String, Vec<&Row>> = BTreeMap::new();
     for row in rows {
-        by_status.entry(row.status()).or_default().push(row);
+        by_status.entry(kind(row)).or_default().push(row);
     }
     let mut sorted: Vec<_> = by_status.into_iter().collect();
     sorted.sort_by_key(|(_, rows)| std::cmp::Reverse(rows.len()));
-    let _ = writeln!(text, "\n{:<18} {:>6}", "status", "count");
+    let _ = writeln!(text, "\n{:<26} {:>6}", "status", "count");
     for (status, rows) in sorted {
         let names: Vec<String> = rows
             .iter()
@@ -124,6 +133,6 @@ fn statuses(text: &mut String, rows: &[Row]) {
             .collect();
         let more = if names.is_empty() { String::new() } else { format!("  {}", names.join(", ")) };
         let dots = if rows.len() > names.len() && !names.is_empty() { ", …" } else { "" };
-        let _ = writeln!(text, "{status:<18} {:>6}{more}{dots}", rows.len());
+        let _ = writeln!(text, "{status:<26} {:>6}{more}{dots}", rows.len());
     }
 }
