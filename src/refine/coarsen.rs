@@ -26,6 +26,10 @@ const STILL_BEST: f64 = 0.8;
 /// Growth of Σ (valence − ideal)² that a diagonal collapse may cost.
 const DIAGONAL_IRREGULARITY: isize = 2;
 
+/// Most element evaluations of one coarsening (a few microseconds each at order 5): what is coarse
+/// enough by then is taken.
+const MOST_WORK: u64 = 1_500_000;
+
 /// State of a coarsening.
 struct Coarsening<'a> {
     boundary: &'a Boundary,
@@ -41,6 +45,8 @@ struct Coarsening<'a> {
     changed: Vec<usize>,
     /// When each chord or diagonal was last refused.
     failed: HashMap<Key, usize>,
+    /// Element evaluations spent.
+    work: u64,
 }
 
 /// A chord's or diagonal's name that survives changes elsewhere: the least pair of vertices on it.
@@ -82,10 +88,9 @@ pub fn coarsen(
         })
         .collect::<Result<Vec<_>>>()?;
     let limits = Limits {
-        scaled_jacobian: limits.scaled_jacobian.min(quality.min_scaled_jacobian),
-        jacobian_ratio: limits.jacobian_ratio.min(quality.min_jacobian_ratio),
         // An element that is larger already must be allowed to stay.
         size: limits.size.max(quality.elements.iter().map(|e| e.size).fold(0.0, f64::max)),
+        ..limits
     };
     let stars = Stars::new(mesh.vertices.len(), &mesh.quads);
     let changed = vec![0; mesh.vertices.len()];
@@ -99,13 +104,14 @@ pub fn coarsen(
         time: 0,
         changed,
         failed: HashMap::new(),
+        work: 0,
     };
     for pass in 0..PASSES {
         let before = run.time;
         progress.report(Stage::Refine, pass as f64 / PASSES as f64)?;
         run.remove_chords(progress)?;
         run.collapse_diagonals(progress)?;
-        if run.time == before {
+        if run.time == before || run.work > MOST_WORK {
             break;
         }
     }
@@ -167,7 +173,17 @@ impl Coarsening<'_> {
     /// Takes a finished change over if it holds; whether it did.
     fn attempt(&mut self, change: Collapsed) -> bool {
         let stars = change.stars.clone();
-        let Some((mesh, active)) = settle(self.optimiser, change, self.limits) else { return false };
+        // Where the mesh is below a limit already it must only not get worse.
+        let near = self.stars.rings(&self.mesh, &change.touched, 1);
+        let before = self.optimiser.quality_of(&self.mesh, Some(&near));
+        let limits = Limits {
+            scaled_jacobian: self.limits.scaled_jacobian.min(before.min_scaled_jacobian),
+            jacobian_ratio: self.limits.jacobian_ratio.min(before.min_jacobian_ratio),
+            ..self.limits
+        };
+        let Some((mesh, active)) = settle(self.optimiser, change, limits, &mut self.work) else {
+            return false;
+        };
         self.time += 1;
         for v in active.iter().flat_map(|q| mesh.quads[*q as usize]) {
             self.changed[v as usize] = self.time;
@@ -226,11 +242,22 @@ impl Coarsening<'_> {
                 }
                 failed.insert(key);
                 self.failed.insert(key, self.time);
+                if self.work > MOST_WORK {
+                    return Ok(());
+                }
             }
-            if !accepted {
+            if !accepted || self.work > MOST_WORK {
                 return Ok(());
             }
         }
+    }
+
+    /// The quad with these two vertices at opposite corners.
+    fn quad_of_diagonal(&self, [a, b]: Key) -> Option<u32> {
+        self.stars.of(a).iter().copied().find(|&q| {
+            let quad = &self.mesh.quads[q as usize];
+            (0..4).any(|i| quad[i] == a && quad[(i + 2) % 4] == b)
+        })
     }
 
     fn collapse_diagonals(&mut self, progress: &Progress) -> Result<()> {
@@ -262,13 +289,23 @@ impl Coarsening<'_> {
             }
             queue.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
             let mut accepted = false;
-            for (_, _, key, q) in queue {
+            let start = self.time;
+            for (_, _, key, _) in queue {
                 progress.report(Stage::Refine, 0.75)?;
+                if self.work > MOST_WORK {
+                    return Ok(());
+                }
+                // Quads are renumbered by every change: find the diagonal's again, if it is still there.
+                let Some(q) = self.quad_of_diagonal(key) else { continue };
+                if self.time > start && self.changed_since(&[q], start) {
+                    continue;
+                }
+                let spare = self.spare();
                 let change = collapse(self.boundary, &self.mesh, &self.stars, &[(key, false)], &[q], &spare);
                 if let Ok(change) = change {
                     if self.attempt(change) {
                         accepted = true;
-                        break;
+                        continue;
                     }
                 }
                 failed.insert(key);

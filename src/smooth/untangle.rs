@@ -10,7 +10,7 @@ use super::problem::Problem;
 /// Least d/A at which a mesh counts as untangled: the shape energy takes over there.
 const UNTANGLED: f64 = 1e-3;
 /// Least share by which ε's bound shrinks in a round.
-const LEAST_DECREASE: f64 = 0.5;
+const LEAST_DECREASE: f64 = 0.1;
 /// Step bound of the minimiser, in natural lengths.
 const REACH: f64 = 1.0;
 
