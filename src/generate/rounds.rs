@@ -13,7 +13,9 @@ use crate::stages::{Round, Stages};
 use std::collections::HashMap;
 
 /// Most rounds of subdivision and smoothing.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 5;
+/// Most elements, as a multiple of the first round's, before another layout is tried.
+const MOST_GROWTH: usize = 3;
 
 /// Makes the layout's quads curved elements that keep the tolerance.
 pub(super) fn refine_and_smooth(
@@ -29,32 +31,35 @@ pub(super) fn refine_and_smooth(
     let mut mesh = start(boundary, layout)?;
     note(stages, &optimiser, &mesh, "layout");
 
+    // Step 7: boundary vertices where the tolerance wants them, edges divided where that is not enough.
+    mesh = watch.run(stages, Stage::Refine, |_| refine::meet_tolerance(mesh, boundary, &error, options))?;
+    note(stages, &optimiser, &mesh, "subdivide");
+    let most = MOST_GROWTH * mesh.quads.len();
     for _ in 0..ROUNDS {
-        // Step 7: boundary vertices where the tolerance wants them; edges divided where that is not enough.
-        mesh =
-            watch.run(stages, Stage::Refine, |_| refine::meet_tolerance(mesh, boundary, &error, options))?;
-        note(stages, &optimiser, &mesh, "subdivide");
         // Step 8: smooth, and untangle if need be.
-        let outcome =
-            watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut mesh, None, Effort::Full)))?;
+        watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut mesh, None, Effort::Full)))?;
         note(stages, &optimiser, &mesh, "smooth");
-        // Step 9: until it holds.
-        if outcome.valid && outcome.error_ratio <= 1.0 {
-            break;
-        }
-        if !outcome.valid {
-            let quality = optimiser.quality(&mesh);
+        // Step 9: again where it does not hold yet. Divided edges keep their shape, so what is valid stays so.
+        let quality = optimiser.quality(&mesh);
+        let mut marked = vec![false; mesh.edges.len()];
+        if quality.valid() {
+            for (e, marked) in marked.iter_mut().enumerate() {
+                *marked = optimiser.error_ratio(&mesh, e as u32) > 1.0;
+            }
+        } else {
             let inverted = |q: &usize| quality.elements[*q].jacobian_ratio <= 0.0;
-            let mut marked = vec![false; mesh.edges.len()];
             for e in (0..mesh.quads.len()).filter(inverted).flat_map(|q| mesh.quad_edges[q]) {
                 marked[e as usize] = true;
             }
-            mesh = watch.run(stages, Stage::Refine, |_| {
-                refine::split_chords(&mesh, boundary, &marked, options.order)
-                    .map_err(|(reason, at)| Error::Layout { reason, at: Some(at) })
-            })?;
-            note(stages, &optimiser, &mesh, "split inverted");
         }
+        if !marked.contains(&true) || mesh.quads.len() > most {
+            break;
+        }
+        mesh = watch.run(stages, Stage::Refine, |_| {
+            refine::split_chords(&mesh, boundary, &marked, options.order)
+                .map_err(|(reason, at)| Error::Layout { reason, at: Some(at) })
+        })?;
+        note(stages, &optimiser, &mesh, "subdivide");
     }
     let quality = optimiser.quality(&mesh);
     if !quality.valid() {
@@ -72,8 +77,18 @@ pub(super) fn refine_and_smooth(
             refine::coarsen(mesh, boundary, &optimiser, limits, &options.progress)
         })?;
         note(stages, &optimiser, &mesh, "coarsen");
-        watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut mesh, None, Effort::Full)))?;
-        note(stages, &optimiser, &mesh, "smooth");
+        // Kept only if nothing that holds is lost.
+        let before = optimiser.quality(&mesh);
+        let mut smoother = mesh.clone();
+        watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut smoother, None, Effort::Full)))?;
+        let after = optimiser.quality(&smoother);
+        if after.valid()
+            && after.error_ratio <= before.error_ratio.max(1.0)
+            && after.min_scaled_jacobian >= before.min_scaled_jacobian
+        {
+            mesh = smoother;
+            note(stages, &optimiser, &mesh, "smooth");
+        }
     }
     Ok(mesh)
 }
