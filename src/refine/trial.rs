@@ -27,6 +27,9 @@ impl Limits {
 /// Rings of quads around a change that are re-optimised, and the effort, in turn until one will do.
 const ATTEMPTS: [(usize, Effort); 3] = [(1, Effort::Quick), (3, Effort::Quick), (3, Effort::Full)];
 
+/// A least Jacobian (over the element's area) from which more rings were never seen to bring elements back.
+const HOPELESS: f64 = -0.4;
+
 /// Completes a merge: boundary vertices re-spaced, the surroundings optimised. The mesh, and the
 /// quads that were optimised, if `limits` hold for them; a second attempt costs more work.
 pub(super) fn settle(
@@ -58,8 +61,10 @@ pub(super) fn settle(
         }
         done = active.len();
         let t0 = std::time::Instant::now();
+        let t0 = std::time::Instant::now();
         let outcome = optimiser.optimise(mesh, Some(&active), effort);
         let quality = optimiser.quality_of(mesh, Some(&active));
+        eprintln!("DBG {effort:?}{rings} active {} of {} {:?} {} ms ratio {}", active.len(), mesh.quads.len(), outcome, t0.elapsed().as_millis(), quality.min_jacobian_ratio);
         eprintln!(
             "DBG {effort:?}{rings} active {} of {} {:?} {} ms ratio {}",
             active.len(),
@@ -77,7 +82,7 @@ pub(super) fn settle(
         // More work lifts the scaled Jacobian, not the rest; and what is far off will not come back.
         let hopeless =
             !outcome.valid || !others || quality.min_scaled_jacobian < 0.5 * limits.scaled_jacobian;
-        if rings > 1 && hopeless {
+        if hopeless && (rings > 1 || outcome.least_jacobian < HOPELESS) {
             return None;
         }
     }

@@ -11,7 +11,7 @@ use crate::mesh::{BoundaryError, QuadMesh};
 use crate::numerics::{Point, Vector, NONE};
 
 /// Weight of the tolerance's barrier against the shape energy, whose optimum is 1/p an element.
-const TOLERANCE_WEIGHT: f64 = 2e-3;
+const TOLERANCE_WEIGHT: f64 = 2e-2;
 /// Weight of −log of each boundary edge's length: keeps sliding vertices apart.
 const LENGTH_WEIGHT: f64 = 1e-3;
 /// The barrier stands this much before the tolerance.
