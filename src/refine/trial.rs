@@ -60,19 +60,8 @@ pub(super) fn settle(
             return None;
         }
         done = active.len();
-        let t0 = std::time::Instant::now();
-        let t0 = std::time::Instant::now();
         let outcome = optimiser.optimise(mesh, Some(&active), effort);
         let quality = optimiser.quality_of(mesh, Some(&active));
-        eprintln!("DBG {effort:?}{rings} active {} of {} {:?} {} ms ratio {}", active.len(), mesh.quads.len(), outcome, t0.elapsed().as_millis(), quality.min_jacobian_ratio);
-        eprintln!(
-            "DBG {effort:?}{rings} active {} of {} {:?} {} ms ratio {}",
-            active.len(),
-            mesh.quads.len(),
-            outcome,
-            t0.elapsed().as_millis(),
-            quality.min_jacobian_ratio
-        );
         let others = quality.min_jacobian_ratio >= limits.jacobian_ratio
             && quality.error_ratio <= 1.0
             && quality.elements.iter().all(|e| e.size <= limits.size);

@@ -43,7 +43,6 @@ pub(super) fn untangle(
         *evaluations += minimum.evaluations + 2;
         (problem.unknowns, problem.metric) = (x, metric);
         least = problem.least_jacobian();
-        eprintln!("UNT eps {epsilon:.3e} least {least:.4} F {before:.3} -> {:.3} ev {}", minimum.value, minimum.evaluations);
         if !(before.is_finite() && minimum.value.is_finite()) {
             break;
         }
