@@ -41,6 +41,8 @@ pub enum Error {
     Unsupported { what: String },
     /// A file or expression cannot be understood; line and column count from 1.
     Parse { what: String, line: usize, column: usize },
+    /// A defect of the library itself.
+    Internal { reason: String },
 }
 
 /// What is wrong with the arrangement of the loops.
@@ -81,6 +83,7 @@ impl Error {
             Error::Io { .. } => "io",
             Error::Unsupported { .. } => "unsupported",
             Error::Parse { .. } => "parse",
+            Error::Internal { .. } => "internal",
         }
     }
 
@@ -195,6 +198,12 @@ impl fmt::Display for Error {
             Error::Unsupported { what } => write!(f, "{what}"),
             Error::Parse { what, line, column } => {
                 write!(f, "line {line}, column {column}: {what}")
+            }
+            Error::Internal { reason } => {
+                write!(
+                    f,
+                    "internal error: {reason}; this is a defect of quadrel, please report it with the domain"
+                )
             }
         }
     }

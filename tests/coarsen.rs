@@ -7,7 +7,7 @@ use quadrel::domain::{Boundary, Place};
 use quadrel::mesh::{BoundaryTolerance, QuadMesh};
 use quadrel::options::Norm;
 use quadrel::progress::Progress;
-use quadrel::refine::{coarsen, least_pieces, split_chord, Limits};
+use quadrel::refine::{coarsen, least_pieces, Limits};
 use quadrel::smooth::{Effort, Optimiser};
 
 fn tolerance(order: usize, value: f64) -> Option<BoundaryTolerance> {
@@ -116,33 +116,4 @@ fn coarsening_is_deterministic_and_can_be_cancelled() {
     assert_eq!(run(), run());
     let stop = Progress::new(|_, _| false);
     assert_eq!(coarsen(m.clone(), &b, &optimiser, Limits::new(0.4), &stop), Err(quadrel::Error::Cancelled));
-}
-
-#[test]
-fn a_split_chord_leaves_the_geometry_alone() {
-    let (b, mut m) = annulus(8, 2, 0.12, 0.05);
-    let optimiser = Optimiser::new(&b, 5, tolerance(5, 1e-3));
-    optimiser.optimise(&mut m, None, Effort::Full);
-    let before = optimiser.quality(&m);
-    let open = m.edges.iter().position(|e| e.span.is_some()).expect("a boundary edge") as u32;
-    let closed = m
-        .edges
-        .iter()
-        .position(|e| e.span.is_none() && m.vertices[e.vertices[0] as usize].place != Place::Interior);
-    let across = split_chord(&b, &m, open, 0.5).expect("a split");
-    let around = split_chord(&b, &m, closed.expect("a radial edge") as u32, 0.4).expect("a split");
-    assert_eq!(across.quads.len(), m.quads.len() + 2);
-    assert_eq!(around.quads.len(), m.quads.len() + 8);
-    for split in [&across, &around] {
-        assert_eq!(euler(split), euler(&m));
-        let after = optimiser.quality(split);
-        assert!(after.valid());
-        assert!(after.min_scaled_jacobian > 0.8 * before.min_scaled_jacobian);
-        assert!(after.error_ratio <= before.error_ratio);
-    }
-    // Twice the edges on the boundary curves that the open chord ends on.
-    assert_eq!(boundary_edges(&across, 0) + boundary_edges(&across, 1), 18);
-    // Splitting and removing again is the identity of the topology.
-    let coarse = coarsen(around, &b, &optimiser, Limits::new(0.3), &Progress::default()).expect("a mesh");
-    assert!(coarse.quads.len() <= m.quads.len());
 }

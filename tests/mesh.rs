@@ -2,8 +2,16 @@
 
 mod support;
 
-use quadrel::mesh::{JacobianProof, Verdict};
-use quadrel::numerics::{coons_map, GaussLobatto, Interpolation, Point, Vector};
+use quadrel::domain::{Boundary, BoundaryPoint, Place};
+use quadrel::mesh::{
+    irregular, irregularity_bound, quads_by_table, scaled_jacobian_ceiling, BoundaryTolerance, Geometry,
+    HighOrderMesh, Irregular, JacobianProof, QuadMesh, Quality, TableCurve, Verdict,
+};
+use quadrel::numerics::{coons_map, GaussLobatto, Interpolation, Point, Vector, NONE};
+use quadrel::options::{Norm, Options, Tolerance};
+use quadrel::Error;
+use std::f64::consts::{FRAC_PI_2, PI};
+use support::{boundary, chain, disc_o_grid, ellipse, polygon};
 
 /// SplitMix64 with a fixed seed: the same elements in every run.
 struct Generator(u64);
@@ -180,15 +188,295 @@ fn proof_is_the_same_for_a_moved_element() {
     }
 }
 
+fn unit_circle_tolerance(b: &Boundary, order: usize, value: f64) -> BoundaryTolerance {
+    let options = Options { order, tolerance: Tolerance::Absolute(value), ..Options::default() };
+    BoundaryTolerance::new(&options, b)
+}
+
+fn finish(b: &Boundary, mesh: &QuadMesh, tolerance: &BoundaryTolerance) -> quadrel::Result<HighOrderMesh> {
+    HighOrderMesh::with_curve(mesh, b, &TableCurve(b), tolerance)
+}
+
 #[test]
-#[ignore = "a measurement, not a check"]
-fn proof_speed() {
-    for n in [3, 5, 8, 16, 32] {
-        let mut g = Generator(3);
-        let mut proof = JacobianProof::new(n);
-        let elements: Vec<_> = (0..200).map(|_| random_element(&mut g, n, 0.1)).collect();
-        let start = std::time::Instant::now();
-        let proven = elements.iter().filter(|e| matches!(proof.examine(e), Verdict::Proven(_))).count();
-        println!("order {n}: {proven} of 200, {:.2} µs each", start.elapsed().as_secs_f64() * 1e6 / 200.0);
+fn disc_of_12_elements_is_proven_and_within_the_tolerance() {
+    let (b, mesh) = disc_o_grid(0.6);
+    let fine = finish(&b, &mesh, &unit_circle_tolerance(&b, 5, 1e-5)).unwrap();
+    fine.check().unwrap();
+    assert_eq!((fine.elements.len(), fine.vertices.len(), fine.nodes.len()), (12, 17, 12 * 36));
+    assert!(fine.scaled_jacobian.iter().all(|s| *s > 0.6 && *s <= 1.0));
+    let border: Vec<_> = fine.edges.iter().filter(|e| e.elements[1] == NONE).collect();
+    assert_eq!(border.len(), 8);
+    for edge in &border {
+        assert!(edge.error > 0.0 && edge.error <= 1e-5 && edge.boundary == 0 && edge.loop_index == 0);
+        assert!(edge.parameters[0] < edge.parameters[1]);
     }
+    // In the caller's frame: on the unit circle around the frame's origin, of area π.
+    for v in &fine.vertices[..8] {
+        assert!(((v - b.frame.origin).norm() - 1.0).abs() < 1e-13);
+    }
+    let quality = Quality::new(5);
+    let area: f64 = (0..12).map(|e| quality.area(fine.element_nodes(e))).sum();
+    assert!((area - PI).abs() < 1e-7, "{area}");
+    assert_eq!(fine.boundary_errors().len(), 1);
+}
+
+#[test]
+fn area_converges_spectrally_on_the_disc() {
+    let error = |order| {
+        let (b, mesh) = disc_o_grid(0.6);
+        let fine = finish(&b, &mesh, &unit_circle_tolerance(&b, order, 1.0)).unwrap();
+        let quality = Quality::new(order);
+        ((0..12).map(|e| quality.area(fine.element_nodes(e))).sum::<f64>() - PI).abs()
+    };
+    assert!(error(2) > 1e-5 && error(4) < 1e-6 && error(8) < 1e-12, "{} {} {}", error(2), error(4), error(8));
+}
+
+#[test]
+fn a_tolerance_that_does_not_hold_is_an_error_at_the_edge() {
+    let (b, mesh) = disc_o_grid(0.6);
+    match finish(&b, &mesh, &unit_circle_tolerance(&b, 3, 1e-5)) {
+        Err(Error::Tolerance { error, tolerance, at }) => {
+            assert!(error > 1e-5 && (tolerance - 1e-5).abs() < 1e-18);
+            assert!(((at - b.frame.origin).norm() - 1.0).abs() < 1e-3);
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn an_inverted_element_is_an_error_with_its_place() {
+    let (b, mut mesh) = disc_o_grid(0.6);
+    // The centre pushed beyond the inner block, towards vertex 8.
+    mesh.vertices[16].point = mesh.vertices[8].point * 1.1;
+    match finish(&b, &mesh, &unit_circle_tolerance(&b, 5, 1e-5)) {
+        Err(Error::InvalidElement { jacobian, at }) => {
+            let place = b.frame.to_canonical(at);
+            assert!(jacobian < 0.0 && (place - mesh.vertices[8].point).norm() < 0.2, "{place}");
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn quad_mesh_check_finds_every_kind_of_defect() {
+    let (b, good) = disc_o_grid(0.6);
+    good.check(&b).unwrap();
+    let defect = |change: &dyn Fn(&mut QuadMesh)| {
+        let mut bad = good.clone();
+        change(&mut bad);
+        bad.check(&b).expect_err("the defect was not found").0
+    };
+    let mut found = vec![
+        defect(&|m| m.vertices[0].point.x += 1e-6),
+        defect(&|m| m.vertices[16].point.x = f64::NAN),
+        defect(&|m| m.vertices[3].place = Place::Interior),
+        defect(&|m| m.vertices[3].place = Place::Junction(4)),
+        defect(&|m| m.quads[0].swap(0, 1)),
+        defect(&|m| m.quads[0][1] = 99),
+        defect(&|m| m.quads[0][1] = m.quads[0][0]),
+        defect(&|m| m.edges[0].quads[0] = 5),
+        defect(&|m| m.quad_edges[3].swap(1, 2)),
+        defect(&|m| {
+            m.quads.pop();
+        }),
+        defect(&|m| m.vertices.push(m.vertices[0])),
+        defect(&|m| {
+            m.region.pop();
+        }),
+    ];
+    found.sort();
+    found.dedup();
+    assert!(found.len() >= 7, "{found:?}");
+    // One quad short: its interior edges become border edges that follow no chain.
+    let quads = good.quads[..11].to_vec();
+    assert!(QuadMesh::new(&b, good.vertices.clone(), quads, vec![0; 11], &Default::default()).is_err());
+    // A domain with another hole has another boundary and Euler number.
+    let hole = chain(&ellipse(0.02, -0.02), 400, true, &[]);
+    let mut holed = b.clone();
+    holed.chains.push(hole);
+    holed.loops.push(vec![1]);
+    assert!(good.check(&holed).is_err());
+}
+
+#[test]
+fn bubbles_bend_interior_edges_the_same_from_both_sides() {
+    let (b, mut mesh) = disc_o_grid(0.6);
+    let mut g = Generator(11);
+    for edge in mesh.edges.iter_mut().filter(|e| e.span.is_none()) {
+        edge.bubbles = (0..4).map(|_| Vector::new(g.symmetric(), g.symmetric()) * 4e-3).collect();
+    }
+    for order in [3, 5, 8] {
+        let fine = finish(&b, &mesh, &unit_circle_tolerance(&b, order, 1e-2)).unwrap();
+        fine.check().unwrap();
+    }
+    // The shape handed over by its vertices, in either direction, gives the same mesh.
+    let shapes = |reverse: bool| {
+        let edges = mesh.edges.iter().filter(|e| e.span.is_none());
+        edges
+            .map(|e| {
+                if !reverse {
+                    return (e.vertices, e.bubbles.clone());
+                }
+                let odd = |m: usize| if m % 2 == 1 { -1.0 } else { 1.0 };
+                let turned = e.bubbles.iter().enumerate().map(|(m, v)| v * odd(m)).collect();
+                ([e.vertices[1], e.vertices[0]], turned)
+            })
+            .collect()
+    };
+    for reverse in [false, true] {
+        let again = QuadMesh::new(
+            &b,
+            mesh.vertices.clone(),
+            mesh.quads.clone(),
+            mesh.region.clone(),
+            &shapes(reverse),
+        );
+        assert_eq!(again.unwrap(), mesh);
+    }
+    // The middle of an edge is where the bubbles put it.
+    let geometry = Geometry::new(4);
+    let (e, edge) = mesh.edges.iter().enumerate().find(|(_, e)| e.span.is_none()).unwrap();
+    let mut nodes = [Point::origin(); 5];
+    geometry.edge_nodes(&mesh, &b, e, &mut nodes);
+    let [p, q] = edge.vertices.map(|v| mesh.vertices[v as usize].point);
+    // P_m(0) = 1, 0, −1/2, 0.
+    let expected = nalgebra::center(&p, &q) + edge.bubbles[0] - edge.bubbles[2] * 0.5;
+    assert!((nodes[2] - expected).norm() < 1e-15);
+}
+
+#[test]
+fn measures_of_known_elements() {
+    let quality = Quality::new(4);
+    let nodes = GaussLobatto::new(4).nodes;
+    let map = |f: &dyn Fn(f64, f64) -> Point| -> Vec<Point> {
+        nodes.iter().flat_map(|eta| nodes.iter().map(|xi| f(*xi, *eta))).collect()
+    };
+    let rectangle = quality.measure(&map(&|x, y| Point::new(3.0 * x + 100.0, y)));
+    assert!((rectangle.scaled_jacobian - 1.0).abs() < 1e-12 && (rectangle.area - 12.0).abs() < 1e-10);
+    assert!((rectangle.aspect_ratio - 3.0).abs() < 1e-12 && (rectangle.jacobian_ratio - 1.0).abs() < 1e-12);
+    let sheared = quality.measure(&map(&|x, y| Point::new(x + y, y)));
+    assert!((sheared.scaled_jacobian - 0.5f64.sqrt()).abs() < 1e-12);
+    assert!((sheared.min_angle - PI / 4.0).abs() < 1e-12 && (sheared.max_angle - PI / 4.0).abs() < 1e-12);
+    // Corners (0,0), (2,0), (1,1), (0,1): det J goes from 1/4 on the top side to 1/2 on the bottom.
+    let trapezoid = quality.measure(&map(&|x, y| Point::new(0.25 * (1.0 + x) * (3.0 - y), 0.5 * (1.0 + y))));
+    assert!((trapezoid.jacobian_ratio - 0.5).abs() < 1e-12 && (trapezoid.area - 1.5).abs() < 1e-12);
+    assert!((trapezoid.scaled_jacobian - 0.5f64.sqrt()).abs() < 1e-12);
+    let mirrored = quality.measure(&map(&|x, y| Point::new(-x, y)));
+    assert!(mirrored.scaled_jacobian < -0.99 && mirrored.area < 0.0 && mirrored.jacobian_ratio < 0.0);
+}
+
+#[test]
+fn least_scaled_jacobian_is_found_between_samples() {
+    let mut g = Generator(5);
+    for order in [2, 5, 8] {
+        let quality = Quality::new(order);
+        for _ in 0..50 {
+            let element = random_element(&mut g, order, 0.12);
+            let least = quality.scaled_jacobian(&element);
+            let mut dense = f64::INFINITY;
+            for i in 0..=80 {
+                for j in 0..=80 {
+                    let (u, v) =
+                        quality.derivatives(&element, [i as f64 / 40.0 - 1.0, j as f64 / 40.0 - 1.0]);
+                    dense = dense.min((u.x * v.y - u.y * v.x) / (u.norm() * v.norm()));
+                }
+            }
+            assert!(least < dense + 2e-3, "order {order}: {least} {dense}");
+        }
+    }
+}
+
+#[test]
+fn table_1_rounds_ties_downwards() {
+    for (degrees, quads) in [(1.0, 1), (90.0, 1), (135.0, 1), (135.1, 2), (180.0, 2), (225.0, 2), (270.0, 3)]
+    {
+        assert_eq!(quads_by_table(f64::to_radians(degrees)), quads);
+    }
+    assert_eq!((quads_by_table(7.0 * PI / 4.0), quads_by_table(2.0 * PI)), (3, 4));
+}
+
+fn regular(n: usize) -> Boundary {
+    let corners: Vec<[f64; 2]> = (0..n)
+        .map(|k| std::f64::consts::TAU * k as f64 / n as f64)
+        .map(|a| [0.4 * a.cos(), 0.4 * a.sin()])
+        .collect();
+    polygon(&corners)
+}
+
+#[test]
+fn ceilings_of_known_domains() {
+    let l_shape = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.5, 0.5], [0.5, 1.0], [0.0, 1.0]];
+    let (disc, _) = disc_o_grid(0.6);
+    let ring = boundary(vec![
+        vec![chain(&ellipse(0.35, 0.35), 1000, true, &[])],
+        vec![chain(&ellipse(0.1, -0.1), 1000, true, &[])],
+    ]);
+    for (name, b, expected) in [
+        ("square", regular(4), 1.0),
+        ("L", polygon(&l_shape), 1.0),
+        ("disc", disc, 0.75f64.sqrt()),
+        ("ring", ring, 1.0),
+        // Two quads at each corner are better than one, and then 4 three-valent vertices are inside.
+        ("octagon", regular(8), 0.75f64.sqrt()),
+        // One quad at each of 108°: sin 108°, and one five-valent vertex.
+        ("pentagon", regular(5), 0.951_056_516_295_153_5),
+        ("thin triangle", polygon(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.1]]), 0.1 / 1.01f64.sqrt()),
+    ] {
+        let ceiling = scaled_jacobian_ceiling(&b);
+        assert!((ceiling - expected).abs() < 1e-9, "{name}: {ceiling}, not {expected}");
+    }
+}
+
+#[test]
+fn irregularity_bounds_of_known_domains() {
+    let (disc, mesh) = disc_o_grid(0.6);
+    let bound = irregularity_bound(&disc);
+    assert_eq!((bound.corners, bound.curves, bound.expected), (4.0, 4, 8));
+    assert_eq!(irregular(&mesh, &disc), Irregular { interior: 4, boundary: 0 });
+    let square = irregularity_bound(&regular(4));
+    assert!(square.corners < 1e-9 && square.curves == 0 && square.expected == 0);
+    // Of five corners of 108° one takes two quads: 4 · 0.2 + 0.8.
+    assert!((irregularity_bound(&regular(5)).corners - 1.6).abs() < 1e-9);
+    // A peanut: convex, concave, convex, concave; its turns are about ±(180° + x), with Σ = 360°.
+    let peanut = |t: f64| {
+        let a = std::f64::consts::TAU * t;
+        let r = 0.3 + 0.15 * (2.0 * a).cos();
+        let dr = -0.3 * (2.0 * a).sin();
+        let d = Vector::new(dr * a.cos() - r * a.sin(), dr * a.sin() + r * a.cos()) * std::f64::consts::TAU;
+        (Point::new(r * a.cos(), r * a.sin()), d)
+    };
+    let waisted = boundary(vec![vec![chain(&peanut, 2000, true, &[])]]);
+    let curves = irregularity_bound(&waisted).curves;
+    // Started elsewhere, the same runs.
+    let shifted = |t: f64| peanut((t + 0.37).fract());
+    assert_eq!(irregularity_bound(&boundary(vec![vec![chain(&shifted, 2000, true, &[])]])).curves, curves);
+    assert!((6..=10).contains(&curves), "{curves}");
+}
+
+#[test]
+fn irregular_counts_boundary_vertices_too() {
+    // A square of 1 × 2 quads: the middle vertices have two quads; then with one corner taken as smooth.
+    let b = polygon(&[[0.0, 0.0], [0.6, 0.0], [0.6, 0.3], [0.0, 0.3]]);
+    let on = |chain, s| Place::Boundary(BoundaryPoint { chain, s });
+    let places = [
+        Place::Junction(0),
+        on(0, 0.3),
+        Place::Junction(1),
+        Place::Junction(2),
+        on(2, 0.3),
+        Place::Junction(3),
+    ];
+    let vertices =
+        places.map(|place| quadrel::mesh::Vertex { point: b.point(place).unwrap(), place }).to_vec();
+    let quads = vec![[0, 1, 4, 5], [1, 2, 3, 4]];
+    let mesh = QuadMesh::new(&b, vertices, quads, vec![0, 0], &Default::default()).unwrap();
+    mesh.check(&b).unwrap();
+    assert_eq!(irregular(&mesh, &b), Irregular::default());
+    let tolerance = BoundaryTolerance { norm: Norm::Max, order: 1, value: 1e-12 };
+    let fine = finish(&b, &mesh, &tolerance).unwrap();
+    fine.check().unwrap();
+    assert!(fine.scaled_jacobian.iter().all(|s| (s - 1.0).abs() < 1e-12));
+    let mut blunt = b.clone();
+    blunt.junctions[0].angle = 2.0 * FRAC_PI_2;
+    assert_eq!(irregular(&mesh, &blunt), Irregular { interior: 0, boundary: 1 });
 }

@@ -1,5 +1,6 @@
 //! Quadrature, interpolation and transfinite maps: exactness on what they must be exact for.
 
+use quadrel::numerics::bernstein::{bernstein_from_chebyshev, chebyshev_from_values};
 use quadrel::numerics::interpolation::{chebyshev_lobatto, equispaced};
 use quadrel::numerics::{coons_map, legendre, GaussLegendre, GaussLobatto, Interpolation, Point};
 
@@ -132,6 +133,28 @@ fn coons_map_keeps_its_sides_and_reproduces_ruled_maps() {
             }
             assert_eq!(map[j], sides[0][j]);
             assert_eq!(map[n * (n + 1) + j], sides[2][n - j]);
+        }
+    }
+}
+
+#[test]
+fn bernstein_coefficients_are_those_of_the_polynomial_and_bound_it() {
+    for n in [1usize, 2, 5, 9, 13] {
+        let nodes = chebyshev_lobatto(n);
+        let f = |x: f64| (0..=n).map(|k| (1.0 + k as f64).sin() * legendre(k, x).0).sum::<f64>();
+        let values = nalgebra::DVector::from_iterator(n + 1, nodes.iter().map(|x| f(*x)));
+        let control = bernstein_from_chebyshev(n) * chebyshev_from_values(n) * values;
+        let (low, high) = (control.min(), control.max());
+        for i in 0..=50 {
+            let t = i as f64 / 50.0;
+            // De Casteljau.
+            let mut c: Vec<f64> = control.iter().copied().collect();
+            while c.len() > 1 {
+                c = c.windows(2).map(|w| w[0] * (1.0 - t) + w[1] * t).collect();
+            }
+            let exact = f(2.0 * t - 1.0);
+            assert!((c[0] - exact).abs() < 1e-9, "degree {n} at {t}: {} not {exact}", c[0]);
+            assert!(low - 1e-9 <= exact && exact <= high + 1e-9);
         }
     }
 }

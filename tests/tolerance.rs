@@ -2,7 +2,7 @@
 
 mod support;
 
-use quadrel::domain::{Boundary, Chain, Frame, Span};
+use quadrel::domain::{Boundary, Chain, Span};
 use quadrel::mesh::{BoundaryError, BoundaryTolerance};
 use quadrel::numerics::{GaussLegendre, GaussLobatto, Interpolation, Point};
 use quadrel::options::{Norm, Options, Tolerance};
@@ -111,12 +111,14 @@ fn a_span_over_the_seam_has_the_same_error_as_any_other() {
 
 #[test]
 fn absolute_tolerances_scale_with_the_frame() {
-    let frame = Frame { scale: 4.0, ..Frame::identity() };
+    let mut b = circle();
+    b.frame.scale = 4.0;
+    b.diagonal = 1.5;
     let value = |norm, tolerance| {
         let options = Options { norm, tolerance, ..Options::default() };
-        let t = BoundaryTolerance::new(&options, &frame);
+        let t = BoundaryTolerance::new(&options, &b);
         assert!(
-            (t.in_caller_frame(&frame).value / t.value - if norm == Norm::Max { 4.0 } else { 8.0 }).abs()
+            (t.in_caller_frame(&b.frame).value / t.value - if norm == Norm::Max { 4.0 } else { 8.0 }).abs()
                 < 1e-12
         );
         t.value
@@ -124,7 +126,9 @@ fn absolute_tolerances_scale_with_the_frame() {
     assert!((value(Norm::L2, Tolerance::Absolute(0.08)) - 0.01).abs() < 1e-15);
     assert!((value(Norm::H1, Tolerance::Absolute(0.08)) - 0.01).abs() < 1e-15);
     assert!((value(Norm::Max, Tolerance::Absolute(0.08)) - 0.02).abs() < 1e-15);
-    assert_eq!(value(Norm::L2, Tolerance::Relative(1e-5)), 1e-5);
+    // The caller's diagonal is 1.5 in this frame.
+    assert!((value(Norm::L2, Tolerance::Relative(1e-5)) - 1e-5 * 1.5f64.powf(1.5)).abs() < 1e-19);
+    assert!((value(Norm::Max, Tolerance::Relative(1e-5)) - 1.5e-5).abs() < 1e-19);
 }
 
 /// Whether the placement covers the chain, and what its largest error is.

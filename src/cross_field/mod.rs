@@ -8,6 +8,24 @@
 //! At a border vertex of interior angle θ that carries n quads the cross on the ray at polar angle φ
 //! from the outgoing border edge (direction a₀) is a₀ + φ (θ − n π/2) / θ: the vertex is blown
 //! up to an arc. n is 2 at every smooth border vertex.
+//!
+//! *Method:* linear finite elements for u, first harmonic (Kowalski, Ledoux, Frey 2013), then a few steps
+//! of diffusion and renormalisation (Merriman, Bence, Osher 1992; Viertel, Osting 2019), which keep
+//! singularities of equal sign apart ([`solve`]).
+
+mod border;
+mod check;
+mod diffusion;
+mod thickness;
+mod tips;
+mod turning;
+
+pub use border::quads_at_corner;
+
+use crate::base_mesh::Triangulation;
+use crate::domain::Boundary;
+use crate::error::Result;
+use crate::options::FieldMethod;
 
 /// The angle of one arm of the cross around a triangle, lifted to the real line.
 ///
@@ -25,6 +43,13 @@ pub struct TriangleCross {
     pub winding: i32,
 }
 
+impl TriangleCross {
+    /// The lifted angle where edge `i` starts (0, 1 or 2), after the turn at its corner.
+    pub fn start_of_edge(&self, i: usize) -> f64 {
+        (0..i).fold(self.start, |angle, k| angle + self.edge_turn[k] + self.corner_turn[k + 1])
+    }
+}
+
 /// The cross field on a base mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CrossField {
@@ -36,4 +61,16 @@ pub struct CrossField {
     pub quads_at: Vec<u8>,
     /// Interior angle of the border polygon at border vertices, in radians; else 0.
     pub border_angle: Vec<f64>,
+}
+
+/// Solves for the cross field on `mesh`, whose border is that of `boundary`.
+///
+/// [`Error::CrossField`](crate::Error::CrossField) if the linear system cannot be solved or
+/// the turns around a triangle do not add up to quarter turns (a degenerate mesh).
+pub fn solve(mesh: &Triangulation, boundary: &Boundary, method: FieldMethod) -> Result<CrossField> {
+    let border = border::Border::new(mesh, boundary)?;
+    let held = tips::held(mesh, boundary, &border);
+    let u = diffusion::solve(mesh, &border, &held, method)?;
+    let triangles = turning::triangle_crosses(mesh, &border, &held, &u)?;
+    Ok(CrossField { u, triangles, quads_at: border.quads, border_angle: border.angle })
 }

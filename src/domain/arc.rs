@@ -43,4 +43,8 @@ impl Curve for EllipticArc {
         let (s, c) = self.angle(t).sin_cos();
         Some(Ok((self.v * c - self.u * s) * (self.end - self.start)))
     }
+
+    fn may_have_corners(&self) -> bool {
+        false
+    }
 }

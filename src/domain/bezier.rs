@@ -55,4 +55,8 @@ impl Curve for Bezier {
         moved.control[k] = p;
         Some(Arc::new(moved))
     }
+
+    fn may_have_corners(&self) -> bool {
+        false
+    }
 }

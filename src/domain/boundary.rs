@@ -96,6 +96,9 @@ pub struct Boundary {
     pub diagonal: f64,
 }
 
+/// Intervals looked at before a search in [`Chain::evaluate_from`].
+const HINT_REACH: usize = 8;
+
 impl Chain {
     /// `s` brought into [0, length]: modulo the length on a closed chain, clamped on an open one.
     pub fn wrap(&self, s: f64) -> f64 {
@@ -117,10 +120,31 @@ impl Chain {
         i
     }
 
+    /// The two table entries around `s`, already wrapped; they lie on one segment.
+    pub(crate) fn around(&self, s: f64) -> (&Sample, &Sample) {
+        let i = self.interval(s);
+        (&self.samples[i], &self.samples[i + 1])
+    }
+
     /// Point and derivative d/ds (nearly of unit length) at arc length `s`.
     pub fn evaluate(&self, s: f64) -> (Point, Vector) {
         let s = self.wrap(s);
-        let i = self.interval(s);
+        self.evaluate_in(self.interval(s), s)
+    }
+
+    /// The same as [`Chain::evaluate`] for a walk along the chain: `hint` is where the last point was
+    /// found (0 at first), and a point shortly after it is found without a search.
+    pub fn evaluate_from(&self, s: f64, hint: &mut usize) -> (Point, Vector) {
+        let s = self.wrap(s);
+        let holds = |i: usize| self.samples[i].s <= s && s < self.samples[i + 1].s;
+        let last = self.samples.len() - 2;
+        let near = (*hint).min(last)..=hint.saturating_add(HINT_REACH).min(last);
+        *hint = near.into_iter().find(|&i| holds(i)).unwrap_or_else(|| self.interval(s));
+        self.evaluate_in(*hint, s)
+    }
+
+    /// Point and derivative at `s` by the table interval `i` that holds it.
+    fn evaluate_in(&self, i: usize, s: f64) -> (Point, Vector) {
         let (a, b) = (&self.samples[i], &self.samples[i + 1]);
         let h = b.s - a.s;
         let x = (s - a.s) / h;

@@ -5,6 +5,7 @@ use crate::domain::bezier::Bezier;
 use crate::domain::boundary_loop::{BoundaryLoop, LoopKind};
 use crate::domain::bounds::Bounds;
 use crate::domain::callback::{CallbackCurve, CurveFn};
+use crate::domain::corners_inside::split_at_corners;
 use crate::domain::curve::Curve;
 use crate::domain::line::Line;
 use crate::domain::planar_domain::Domain;
@@ -210,12 +211,13 @@ impl DomainBuilder {
                 let name = if name.is_empty() { &given.name } else { name };
                 CurveSegment::new(curve.clone(), name.clone(), index, i)
             };
-            let segments: Vec<_> = given.segments.iter().enumerate().map(segment).collect();
-            for s in &segments {
+            let mut segments = Vec::with_capacity(given.segments.len());
+            for s in given.segments.iter().enumerate().map(segment) {
                 let sampled = Bounds::of(&s.sample()?);
                 if given.kind != LoopKind::Interface {
                     bounds.merge(&sampled);
                 }
+                segments.append(&mut split_at_corners(s)?);
             }
             let name = given.name.clone();
             loops.push((given.kind, BoundaryLoop { name, index, segments, largest_gap: 0.0 }));

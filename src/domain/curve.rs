@@ -29,6 +29,12 @@ pub trait Curve: Send + Sync {
         false
     }
 
+    /// Whether its direction may jump inside (0, 1): it is then searched for corners, which become ends of
+    /// segments.
+    fn may_have_corners(&self) -> bool {
+        true
+    }
+
     /// The same curve with its end at t = 0 or 1 (`at_one`) moved to `p`, if the kind of curve has a
     /// natural way to do that; else a linear function of t is added to it.
     fn with_end(&self, at_one: bool, p: Point) -> Option<Arc<dyn Curve>> {

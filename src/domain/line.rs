@@ -28,4 +28,8 @@ impl Curve for Line {
     fn with_end(&self, at_one: bool, p: Point) -> Option<Arc<dyn Curve>> {
         Some(Arc::new(if at_one { Line { to: p, ..*self } } else { Line { from: p, ..*self } }))
     }
+
+    fn may_have_corners(&self) -> bool {
+        false
+    }
 }

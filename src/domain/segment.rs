@@ -8,11 +8,16 @@ use crate::error::{Error, Result};
 use crate::numerics::{Point, Vector};
 use std::sync::Arc;
 
+/// Steps of the extrapolation to a tangent where the derivative vanishes.
+const LEVELS: i32 = 4;
+
 /// A curve segment of a loop.
 #[derive(Clone)]
 pub struct CurveSegment {
     curve: Arc<dyn Curve>,
     name: String,
+    /// The part of the curve's own parameter that it is.
+    range: [f64; 2],
     /// Walked against the curve's own parameter.
     reversed: bool,
     /// Added linearly: the first at t = 0, the second at t = 1 (closes small gaps at joints).
@@ -24,7 +29,8 @@ pub struct CurveSegment {
 
 impl CurveSegment {
     pub(crate) fn new(curve: Arc<dyn Curve>, name: String, loop_index: usize, index: usize) -> Self {
-        CurveSegment { curve, name, reversed: false, correction: [Vector::zeros(); 2], index, loop_index }
+        let correction = [Vector::zeros(); 2];
+        CurveSegment { curve, name, range: [0.0, 1.0], reversed: false, correction, index, loop_index }
     }
 
     /// Name of its boundary.
@@ -49,6 +55,12 @@ impl CurveSegment {
 
     /// The parameter in the caller's sense.
     pub fn caller_parameter(&self, t: f64) -> f64 {
+        let [a, b] = self.range;
+        a + (b - a) * self.unreversed(t)
+    }
+
+    /// The parameter in the caller's sense, as a share of the range.
+    fn unreversed(&self, t: f64) -> f64 {
         if self.reversed {
             1.0 - t
         } else {
@@ -78,10 +90,10 @@ impl CurveSegment {
 
     /// d/dt at `t`. It may vanish, or be infinite where the caller's parametrisation is singular.
     pub fn derivative(&self, t: f64) -> Result<Vector> {
-        let own = self.caller_parameter(t);
-        let d = match self.curve.derivative(own) {
-            Some(d) => d,
-            None => differences::derivative(|t| self.curve.point(t), own),
+        let [a, b] = self.range;
+        let d = match self.curve.derivative(self.caller_parameter(t)) {
+            Some(d) => d.map(|d| d * (b - a)),
+            None => differences::derivative(|u| self.curve.point(a + (b - a) * u), self.unreversed(t)),
         };
         let d = d.map_err(|CurveFailure(reason)| self.failure(t, reason))?;
         Ok(if self.reversed { -d } else { d } + (self.correction[1] - self.correction[0]))
@@ -115,6 +127,18 @@ impl CurveSegment {
         self.end_tangent(false)
     }
 
+    /// Whether its direction may jump inside.
+    pub(crate) fn may_have_corners(&self) -> bool {
+        self.curve.may_have_corners()
+    }
+
+    /// The two parts before and after parameter `t`; only before it is reversed or joined.
+    pub(crate) fn split(&self, t: f64) -> [CurveSegment; 2] {
+        let [a, b] = self.range;
+        let middle = self.caller_parameter(t);
+        [[a, middle], [middle, b]].map(|range| CurveSegment { range, ..self.clone() })
+    }
+
     /// Its first point.
     pub fn start(&self) -> Result<Point> {
         self.point(0.0)
@@ -128,7 +152,9 @@ impl CurveSegment {
     /// Parameters from 0 to 1, both included, between which it is smooth.
     pub fn pieces(&self) -> Vec<f64> {
         let mut t = vec![0.0];
-        t.extend(self.curve.breaks().iter().map(|&b| snap(b)).filter(|&b| b > 0.0 && b < 1.0));
+        let [a, b] = self.range;
+        let shares = self.curve.breaks().iter().map(|&k| snap((k - a) / (b - a)));
+        t.extend(shares.filter(|&k| k > 0.0 && k < 1.0));
         if self.reversed {
             t[1..].reverse();
             t[1..].iter_mut().for_each(|b| *b = 1.0 - *b);
@@ -175,7 +201,7 @@ impl CurveSegment {
 
     /// Moves its end at t = 1 (`at_end`) or 0 to `to`.
     pub(crate) fn move_end(&mut self, at_end: bool, to: Point) -> Result<()> {
-        if self.correction == [Vector::zeros(); 2] {
+        if self.correction == [Vector::zeros(); 2] && self.range == [0.0, 1.0] {
             if let Some(curve) = self.curve.with_end(at_end != self.reversed, to) {
                 self.curve = curve;
                 return Ok(());
@@ -189,25 +215,39 @@ impl CurveSegment {
     /// Unit tangent in the direction of travel at t = 1 (`at_end`) or 0: the limit where the derivative
     /// vanishes or is infinite.
     pub fn end_tangent(&self, at_end: bool) -> Result<Vector> {
-        let size = self.size()?;
+        let size = if self.is_line() { 0.0 } else { self.size()? };
         let (end, inward) = if at_end { (1.0, -1.0) } else { (0.0, 1.0) };
         let d = self.derivative(end)?;
         let n = d.norm();
-        if n.is_finite() && n > 1e-7 * size {
+        // At a corner inside the caller's curve its derivative may be that of the other side.
+        let at_end_of_curve = [0.0, 1.0].contains(&self.caller_parameter(end));
+        if at_end_of_curve && n.is_finite() && n > 1e-7 * size {
             return Ok(d / n);
         }
-        // Two directions near the end, extrapolated to it.
-        for k in [16, 13, 10, 7, 4] {
-            let h = 0.5f64.powi(k);
-            let a = self.derivative(end + inward * h)?;
-            let b = self.derivative(end + inward * 0.5 * h)?;
-            let (na, nb) = (a.norm(), b.norm());
-            if na.is_finite() && nb.is_finite() && na.min(nb) > 1e-10 * size {
-                let t = b / nb * 2.0 - a / na;
-                if t.norm() > 0.5 {
-                    return Ok(t.normalize());
-                }
+        // Directions to points near the end, at steps that halve, extrapolated to it: they are smooth in t
+        // whatever the order at which the derivative vanishes. The steps stop where rounding would show.
+        let tip = self.point(end)?;
+        let noise = f64::EPSILON * (tip.coords.norm() + size);
+        let least = (1e-8 * size).max(1e6 * noise);
+        let away = |k: i32| -> Result<Vector> { Ok(self.point(end + inward * 0.5f64.powi(k))? - tip) };
+        let mut last = LEVELS;
+        while last < 40 && away(last + 1)?.norm() >= least {
+            last += 1;
+        }
+        let mut row: Vec<Vector> = Vec::new();
+        for k in last - LEVELS + 1..=last {
+            let d = away(k)?;
+            let mut value = if d.norm() > 0.0 { d.normalize() } else { Vector::zeros() };
+            let mut factor = 1.0;
+            for old in &mut row {
+                factor *= 2.0;
+                let next = value + (value - *old) / (factor - 1.0);
+                *old = std::mem::replace(&mut value, next);
             }
+            row.push(value);
+        }
+        if let Some(t) = row.last().filter(|t| t.norm() > 0.5) {
+            return Ok(t.normalize() * inward);
         }
         let chord = self.end()? - self.start()?;
         let n = chord.norm();

@@ -38,6 +38,8 @@ struct Interval {
     to: Node,
     /// Interpolation error of the interval it was split from.
     parent_error: f64,
+    /// It was split by the asymptotic error law.
+    resolved: bool,
 }
 
 /// An accepted interval.
@@ -111,7 +113,7 @@ impl Walk<'_> {
             pieces.push(Piece { from, to, length, starts_at_break: false });
         } else {
             for w in ends.windows(2) {
-                self.bisect(w[0], w[1], &mut pieces)?;
+                self.divide(w[0], w[1], &mut pieces)?;
             }
         }
         Ok(entries(&pieces))
@@ -119,50 +121,79 @@ impl Walk<'_> {
 
     /// Appends the accepted intervals of the smooth piece from `a` to `b`, in order. Levels are done one
     /// after the other, so that the limit on their number leaves an even resolution.
-    fn bisect(&self, a: f64, b: f64, pieces: &mut Vec<Piece>) -> Result<()> {
+    fn divide(&self, a: f64, b: f64, pieces: &mut Vec<Piece>) -> Result<()> {
         let limit = pieces.len() + MOST_INTERVALS;
         let first = pieces.len();
-        let mut open = VecDeque::from([Interval {
-            from: self.node(a)?,
-            to: self.node(b)?,
-            parent_error: f64::INFINITY,
-        }]);
-        while let Some(Interval { from, to, parent_error }) = open.pop_front() {
-            let at = |k: f64| snap(from.t + (to.t - from.t) * k);
-            let t = [from.t, at(0.25), at(0.5), at(0.75), to.t];
-            let mut quarters = [0.0; 4];
-            for k in 0..4 {
-                quarters[k] = self.length(GaussRule::four(), t[k], t[k + 1])?;
-            }
-            let length: f64 = quarters.iter().sum();
-            let whole = self.length(GaussRule::eight(), from.t, to.t)?;
-            let mut error = 10.0 * (whole - length).abs();
-            let mut s = 0.0;
-            for k in 1..4 {
-                s += quarters[k - 1];
-                error = error.max((self.point(t[k])? - hermite(&from, &to, length, s)).norm());
-            }
+        let (from, to) = (self.node(a)?, self.node(b)?);
+        let mut open = VecDeque::from([Interval { from, to, parent_error: f64::INFINITY, resolved: false }]);
+        while let Some(interval) = open.pop_front() {
+            let Interval { from, to, parent_error, resolved } = interval;
+            let estimate =
+                if resolved { self.estimate_short(&from, &to)? } else { self.estimate(&from, &to)? };
+            let Estimate { length, error, resolved } = estimate;
+            let middle = snap(0.5 * (from.t + to.t));
+            let indivisible = middle <= from.t || middle >= to.t;
             let full = pieces.len() + open.len() >= limit;
             // A smooth curve gains a factor of 16 by halving, a kink 2; noise gains nothing.
             let stagnant = length < 1e-3 && error > 0.7 * parent_error;
-            if error <= TABLE_ERROR
-                || length <= TABLE_SHORTEST
-                || t[2] <= t[0]
-                || t[2] >= t[4]
-                || full
-                || stagnant
-            {
+            if error <= TABLE_ERROR || length <= TABLE_SHORTEST || indivisible || full || stagnant {
                 pieces.push(Piece { from, to, length, starts_at_break: false });
-            } else {
-                let middle = self.node(t[2])?;
-                open.push_back(Interval { from, to: middle, parent_error: error });
-                open.push_back(Interval { from: middle, to, parent_error: error });
+                continue;
+            }
+            // Once the fourth-order error law holds it tells how many parts are needed.
+            let parts =
+                if resolved { (1.1 * (error / TABLE_ERROR).powf(0.25)).ceil().clamp(2.0, 64.0) } else { 2.0 };
+            let mut start = from;
+            for k in 1..=parts as usize {
+                let t = snap(from.t + (to.t - from.t) * (k as f64 / parts));
+                let end = if k == parts as usize { to } else { self.node(t)? };
+                if end.t > start.t {
+                    open.push_back(Interval { from: start, to: end, parent_error: error, resolved });
+                    start = end;
+                }
             }
         }
         pieces[first..].sort_by(|p, q| p.from.t.total_cmp(&q.from.t));
         pieces[first].starts_at_break = first > 0;
         Ok(())
     }
+
+    /// Length of an interval and error of its interpolant at three points, with a check of the quadrature.
+    fn estimate(&self, from: &Node, to: &Node) -> Result<Estimate> {
+        let at = |k: f64| snap(from.t + (to.t - from.t) * k);
+        let t = [from.t, at(0.25), at(0.5), at(0.75), to.t];
+        let mut quarters = [0.0; 4];
+        for k in 0..4 {
+            quarters[k] = self.length(GaussRule::four(), t[k], t[k + 1])?;
+        }
+        let length: f64 = quarters.iter().sum();
+        let mismatch = (self.length(GaussRule::eight(), from.t, to.t)? - length).abs();
+        let mut error = 10.0 * mismatch;
+        let mut s = 0.0;
+        for k in 1..4 {
+            s += quarters[k - 1];
+            error = error.max((self.point(t[k])? - hermite(from, to, length, s)).norm());
+        }
+        Ok(Estimate { length, error, resolved: mismatch < 1e-9 * length && error < 1e-3 * length })
+    }
+
+    /// The same for an interval so short that the error is largest at its middle.
+    fn estimate_short(&self, from: &Node, to: &Node) -> Result<Estimate> {
+        let middle = snap(0.5 * (from.t + to.t));
+        let half = self.length(GaussRule::four(), from.t, middle)?;
+        let length = half + self.length(GaussRule::four(), middle, to.t)?;
+        let error = (self.point(middle)? - hermite(from, to, length, half)).norm();
+        Ok(Estimate { length, error, resolved: true })
+    }
+}
+
+/// What is known of an interval.
+struct Estimate {
+    length: f64,
+    /// Largest distance seen of the interpolant from the curve.
+    error: f64,
+    /// The interval is short enough for the asymptotic error law.
+    resolved: bool,
 }
 
 /// The Hermite interpolant of an interval at distance `s` from its start.

@@ -124,6 +124,10 @@ impl Curve for CubicSpline {
     fn breaks(&self) -> &[f64] {
         &self.breaks
     }
+
+    fn may_have_corners(&self) -> bool {
+        false
+    }
 }
 
 /// Second derivatives / 6 at the knots of an open spline, by elimination in the tridiagonal system.

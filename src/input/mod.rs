@@ -4,9 +4,13 @@
 
 mod blocks;
 mod control;
+mod embedded;
 mod equation;
 mod expression;
+mod svg;
+mod svg_arc;
 
+pub use embedded::gingerbread_man;
 pub use equation::EquationCurve;
 pub use expression::Expression;
 
@@ -41,10 +45,7 @@ pub fn read(path: &Path, component: Option<usize>) -> Result<Model> {
     let text = decode(bytes)?;
     match extension.as_deref() {
         Some("control") => control::read(&name, &text, path.parent()),
-        Some("svg") => {
-            let _ = component;
-            Err(Error::Unsupported { what: format!("{shown}: svg comes next") })
-        }
+        Some("svg") => svg::read(&name, &text, component),
         _ => Err(Error::Unsupported { what: format!("{shown}: neither a .control nor a .svg file") }),
     }
 }
@@ -52,6 +53,11 @@ pub fn read(path: &Path, component: Option<usize>) -> Result<Model> {
 /// The text of a control file; data files it names are looked for in `base_dir` and above.
 pub fn read_control_str(text: &str, base_dir: Option<&Path>) -> Result<Model> {
     control::read("model", text, base_dir)
+}
+
+/// The text of an SVG file; `component` as for [`read`].
+pub fn read_svg_str(text: &str, component: Option<usize>) -> Result<Model> {
+    svg::read("model", text, component)
 }
 
 /// The bytes as text. Control files may hold names in other encodings; zero bytes mean it is no text.

@@ -2,6 +2,31 @@
 //!
 //! *In:* a [`BlockLayout`]: a T-mesh of regions, traced or drawn by hand.
 //! *Out:* a [`QuadLayout`]: conforming, every region four-sided.
+//!
+//! *Method:* regions that are not four-sided are repaired ([`conform`] calls the rules of the paper, and
+//! patterns beyond them); one integer length is chosen for every arc, zero allowed, so that the
+//! regions can be filled with quads ([`lengths`], an own solver of [`bidirected_flow`]s after Campen,
+//! Bommes, Kobbelt 2015 and Heistermann, Warnett, Bommes 2023); points that zero lengths merge are
+//! identified and the regions filled by grids ([`extract`]). Where lengths contradict each
+//! other a region is cut into a triangle and a pentagon.
+
+pub mod bidirected_flow;
+mod check;
+mod conform;
+mod cut;
+pub mod extract;
+mod grids;
+mod identify;
+pub mod lengths;
+mod polyline;
+mod repair;
+mod targets;
+
+pub use conform::{conform, Conforming};
+pub use cut::BorderNode;
+pub use targets::{LengthTargets, PentagonRule, Targets};
+
+pub mod t_mesh;
 
 use crate::domain::{Place, Span};
 use crate::numerics::Point;

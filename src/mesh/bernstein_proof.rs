@@ -12,6 +12,7 @@
 //! Reference: A. Johnen, J.-F. Remacle, C. Geuzaine, *Geometrical validity of curvilinear finite
 //! elements*, J. Comput. Phys. 233 (2013).
 
+use super::dense::{multiply, row_major, row_major_transposed, transpose};
 use crate::numerics::bernstein::{bernstein_from_chebyshev, chebyshev_from_values, row_sum_norm};
 use crate::numerics::interpolation::chebyshev_lobatto;
 use crate::numerics::{GaussLobatto, Interpolation, Point};
@@ -50,6 +51,7 @@ pub struct JacobianProof {
     points: Vec<f64>,
     /// Values to Chebyshev coefficients, (n + 1)² row by row.
     chebyshev: Vec<f64>,
+    chebyshev_t: Vec<f64>,
     /// For large and for small rectangles.
     conversions: [Conversion; 2],
     /// Values and derivatives on the whole interval, the first rectangle's.
@@ -63,6 +65,9 @@ pub struct JacobianProof {
 struct Rows {
     value: Vec<f64>,
     slope: Vec<f64>,
+    /// Their transposes: products run along rows.
+    value_t: Vec<f64>,
+    slope_t: Vec<f64>,
 }
 
 /// The change from Chebyshev coefficients below a cut to Bernstein coefficients.
@@ -70,8 +75,9 @@ struct Rows {
 struct Conversion {
     /// Number of coefficients in each direction.
     kept: usize,
-    /// `kept`² entries, row by row.
+    /// `kept`² entries, row by row, and the transpose.
     matrix: Vec<f64>,
+    matrix_t: Vec<f64>,
     /// Rounding error of a Bernstein coefficient and the tail, relative to the error of the values.
     amplification: f64,
     /// The same, relative to the largest value.
@@ -120,10 +126,6 @@ enum Finding {
     Open,
 }
 
-fn row_major(m: &DMatrix<f64>) -> Vec<f64> {
-    m.transpose().as_slice().to_vec()
-}
-
 impl Conversion {
     fn new(degree: usize, chebyshev: &DMatrix<f64>) -> Self {
         let (size, kept) = (chebyshev.nrows(), degree + 1);
@@ -135,7 +137,8 @@ impl Conversion {
         let tail = 2.0 * (row * (size - kept) as f64) * (row * size as f64);
         let amplification = convert * convert + tail;
         let summation = f64::EPSILON * (4 * size + 32) as f64 * amplification;
-        Conversion { kept, matrix: row_major(&bernstein), amplification, summation }
+        let (matrix, matrix_t) = (row_major(&bernstein), row_major_transposed(&bernstein));
+        Conversion { kept, matrix, matrix_t, amplification, summation }
     }
 }
 
@@ -164,8 +167,14 @@ impl JacobianProof {
         let slopes = &values * &d;
         JacobianProof {
             differentiation: row_major(&d),
-            whole: Rows { value: row_major(&values), slope: row_major(&slopes) },
+            whole: Rows {
+                value: row_major(&values),
+                slope: row_major(&slopes),
+                value_t: row_major_transposed(&values),
+                slope_t: row_major_transposed(&slopes),
+            },
             chebyshev: row_major(&chebyshev),
+            chebyshev_t: row_major_transposed(&chebyshev),
             nodes,
             points,
             conversions,
@@ -232,8 +241,8 @@ impl JacobianProof {
             // Across first: rows stay contiguous. by_value[b][i] = Σ_j L[b][j] x[j][i].
             multiply(&across.value, &work.x[c], m, nodes, nodes, &mut work.by_value);
             multiply(&across.slope, &work.x[c], m, nodes, nodes, &mut work.by_slope);
-            multiply_transposed(&work.by_value, &along.slope, m, nodes, m, &mut work.slopes[c]);
-            multiply_transposed(&work.by_slope, &along.value, m, nodes, m, &mut work.slopes[2 + c]);
+            multiply(&work.by_value, &along.slope_t, m, nodes, m, &mut work.slopes[c]);
+            multiply(&work.by_slope, &along.value_t, m, nodes, m, &mut work.slopes[2 + c]);
         }
         let [xu, yu, xv, yv] = &work.slopes;
         work.det.clear();
@@ -249,12 +258,12 @@ impl JacobianProof {
             let index = if c == 0 { place % m } else { place / m };
             r.center[c] + r.half * self.points[index]
         });
-        if !(least > 0.0) {
+        if least <= 0.0 || least.is_nan() {
             return Finding::Negative { value: least, at };
         }
         // Values → Chebyshev coefficients → control values of the kept part.
         multiply(&self.chebyshev, &work.det, m, m, m, &mut work.half);
-        multiply_transposed(&work.half, &self.chebyshev, m, m, m, &mut work.coefficients);
+        multiply(&work.half, &self.chebyshev_t, m, m, m, &mut work.coefficients);
         let conversion = &self.conversions[usize::from(r.depth >= SMALL_DEPTH)];
         let kept = conversion.kept;
         let mut tail = 0.0;
@@ -269,7 +278,7 @@ impl JacobianProof {
             }
         }
         multiply(&conversion.matrix, &work.coefficients, kept, kept, kept, &mut work.half);
-        multiply_transposed(&work.half, &conversion.matrix, kept, kept, kept, &mut work.control);
+        multiply(&work.half, &conversion.matrix_t, kept, kept, kept, &mut work.control);
         let lowest = work.control.iter().copied().fold(f64::INFINITY, f64::min);
         let steepest = work.slopes.iter().flatten().fold(work.steepest, |g: f64, x| g.max(x.abs()));
         work.steepest = steepest;
@@ -294,29 +303,7 @@ impl JacobianProof {
             self.nodes.basis(center + half * p, row);
         }
         multiply(&rows.value, &self.differentiation, self.points.len(), nodes, nodes, &mut rows.slope);
-    }
-}
-
-/// out = a · b with a of rows × inner and b of inner × columns, row by row.
-fn multiply(a: &[f64], b: &[f64], rows: usize, inner: usize, columns: usize, out: &mut Vec<f64>) {
-    out.clear();
-    out.resize(rows * columns, 0.0);
-    for (row, into) in a.chunks_exact(inner).zip(out.chunks_exact_mut(columns)) {
-        for (c, source) in row.iter().zip(b.chunks_exact(columns)) {
-            for (o, s) in into.iter_mut().zip(source) {
-                *o += c * s;
-            }
-        }
-    }
-}
-
-/// out = a · bᵀ with a of rows × inner and b of columns × inner, row by row.
-fn multiply_transposed(a: &[f64], b: &[f64], rows: usize, inner: usize, columns: usize, out: &mut Vec<f64>) {
-    out.clear();
-    out.reserve(rows * columns);
-    for row in a.chunks_exact(inner).take(rows) {
-        for other in b.chunks_exact(inner).take(columns) {
-            out.push(row.iter().zip(other).map(|(x, y)| x * y).sum());
-        }
+        transpose(&rows.value, self.points.len(), &mut rows.value_t);
+        transpose(&rows.slope, self.points.len(), &mut rows.slope_t);
     }
 }

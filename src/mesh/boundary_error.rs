@@ -8,7 +8,7 @@
 
 use crate::domain::{Boundary, Chain, Frame, Span};
 use crate::numerics::{GaussLegendre, GaussLobatto, Interpolation, Point, Vector};
-use crate::options::{Norm, Options, Tolerance};
+use crate::options::{Norm, Options};
 use nalgebra::DMatrix;
 
 /// The tolerance every boundary edge has to keep.
@@ -22,13 +22,10 @@ pub struct BoundaryTolerance {
 }
 
 impl BoundaryTolerance {
-    /// The options' tolerance in the canonical frame. A relative one means the domain at a
-    /// diagonal of 1, which is the canonical frame itself.
-    pub fn new(options: &Options, frame: &Frame) -> Self {
-        let value = match options.tolerance {
-            Tolerance::Relative(e) => e,
-            Tolerance::Absolute(e) => e / norm_unit(options.norm, frame.scale),
-        };
+    /// The options' tolerance in the canonical frame. A relative one, E, means E · D^{3/2} (E · D for the
+    /// maximum), D the diagonal of the domain's bounding box.
+    pub fn new(options: &Options, boundary: &Boundary) -> Self {
+        let value = boundary.canonical_tolerance(options.tolerance, options.norm);
         BoundaryTolerance { norm: options.norm, order: options.order, value }
     }
 
@@ -100,12 +97,13 @@ impl BoundaryError {
     pub fn of_chain(&self, chain: &Chain, start: f64, end: f64) -> f64 {
         let mut nodes = [Point::origin(); MAX_NODES];
         let nodes = &mut nodes[..self.lobatto.nodes.len()];
+        let mut hint = 0;
         for (node, xi) in nodes.iter_mut().zip(&self.lobatto.nodes) {
-            *node = chain.point(start + 0.5 * (1.0 + xi) * (end - start));
+            *node = chain.evaluate_from(start + 0.5 * (1.0 + xi) * (end - start), &mut hint).0;
         }
         let mut breaks = Vec::new();
         breaks_within(chain, start, end, &mut breaks);
-        let curve = |s: f64| Ok::<_, std::convert::Infallible>(chain.evaluate(start + s));
+        let curve = |s: f64| Ok::<_, std::convert::Infallible>(chain.evaluate_from(start + s, &mut hint));
         match self.measure(nodes, end - start, &breaks, curve) {
             Ok(e) => e,
             Err(never) => match never {},
@@ -172,9 +170,9 @@ impl BoundaryError {
     fn node_slopes(&self, nodes: &[Point], length: f64) -> [Vector; MAX_NODES] {
         let mut slopes = [Vector::zeros(); MAX_NODES];
         if self.tolerance.norm == Norm::H1 {
-            for i in 0..nodes.len() {
+            for (i, slope) in slopes.iter_mut().enumerate().take(nodes.len()) {
                 for (j, node) in nodes.iter().enumerate() {
-                    slopes[i] += node.coords * (self.differentiation[(i, j)] * 2.0 / length);
+                    *slope += node.coords * (self.differentiation[(i, j)] * 2.0 / length);
                 }
             }
         }
@@ -248,8 +246,7 @@ impl Accumulated {
             }
             Norm::Max => {
                 let distance = error.norm();
-                // Also true for a NaN, which must not be lost.
-                if !(distance <= self.sum) {
+                if distance > self.sum || distance.is_nan() {
                     (self.sum, self.place) = (distance, s);
                 }
             }

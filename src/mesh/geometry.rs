@@ -3,9 +3,9 @@
 //! Boundary edges interpolate their chain in arc length, interior edges are straight plus bubbles, and
 //! the inside of an element is the Coons map of its four edges.
 
-use super::QuadMesh;
+use super::{Edge, QuadMesh};
 use crate::domain::Boundary;
-use crate::numerics::{coons_map, legendre, GaussLobatto, Point};
+use crate::numerics::{coons_map, legendre, GaussLobatto, Point, Vector};
 
 /// Tables for meshes of one order; build once.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,18 +41,19 @@ impl Geometry {
         (out[0], out[n]) = (a, b);
         if let Some(span) = edge.span {
             let chain = &boundary.chains[span.chain as usize];
-            for i in 1..n {
-                out[i] = chain.point(span.start + 0.5 * (1.0 + self.reference[i]) * (span.end - span.start));
+            for (node, xi) in out.iter_mut().zip(&self.reference).take(n).skip(1) {
+                *node = chain.point(span.start + 0.5 * (1.0 + xi) * (span.end - span.start));
             }
             return;
         }
-        for i in 1..n {
-            let mut p = a + (b - a) * (0.5 * (1.0 + self.reference[i]));
-            for (c, bubble) in edge.bubbles.iter().zip(&self.bubbles) {
-                p += c * bubble[i];
-            }
-            out[i] = p;
+        for (i, (node, xi)) in out.iter_mut().zip(&self.reference).enumerate().take(n).skip(1) {
+            *node = a + (b - a) * (0.5 * (1.0 + xi)) + self.bubble_offset(edge, i);
         }
+    }
+
+    /// What the bubbles of `edge` add at node `i` to the straight edge.
+    pub fn bubble_offset(&self, edge: &Edge, i: usize) -> Vector {
+        edge.bubbles.iter().zip(&self.bubbles).map(|(c, bubble)| c * bubble[i]).sum()
     }
 
     /// Nodes of all edges, N + 1 each, in the order of the mesh's edges.

@@ -1,17 +1,43 @@
 //! Step 9 of the paper: the meshes, their quality and the proof that they are valid.
 //!
-//! [`QuadMesh`] is the mesh that refinement and smoothing work on: vertices, quads, and one polynomial
-//! curve for each edge, shared by both sides. [`HighOrderMesh`] is the result: order-N elements with
-//! all their nodes, in the caller's frame, proven valid.
+//! *In:* a [`QuadMesh`], the mesh that refinement and smoothing work on: vertices, quads, and one
+//! polynomial curve for each edge, shared by both sides; the boundary and the tolerance.
+//! *Out:* a [`HighOrderMesh`]: order-N elements with all their nodes, in the caller's frame.
+//!
+//! *Method:* boundary edges interpolate the exact curves at the Gauss-Lobatto points in arc length
+//! ([`ExactCurve`]); insides are Coons maps ([`Geometry`]). Nothing is returned that is not
+//! conforming ([`QuadMesh::check`]), proven to have a positive Jacobian over every whole element
+//! ([`JacobianProof`]: Johnen, Remacle, Geuzaine 2013) and within the tolerance on every boundary edge
+//! ([`BoundaryError`]).
+//!
+//! *Norms.* With s the arc length along an edge of length L, x(s) the exact curve and x_N the order-N edge:
+//! L2 is (∫ |x − x_N|² ds)^½, H1 is (∫ |x − x_N|² + L² |x′ − x_N′|² ds)^½, Max is max |x − x_N|. A
+//! relative tolerance E stands for E · D^{3/2} (Max: E · D), D the diagonal of the domain's bounding box.
+//!
+//! *Quality* is the scaled Jacobian, the minimum over an element of det J / (|x_ξ| |x_η|)
+//! ([`Quality`]), to be compared with what the domain's corners allow ([`scaled_jacobian_ceiling`]).
 
 mod bernstein_proof;
 mod boundary_error;
+mod bubbles;
+mod ceiling;
+mod conformity;
+mod dense;
+mod exact_curve;
 mod geometry;
+mod high_order_mesh;
+mod measures;
 mod quad_mesh;
 
 pub use bernstein_proof::{JacobianProof, Verdict};
 pub use boundary_error::{BoundaryError, BoundaryTolerance};
+pub use bubbles::{bubble_shape, fit_bubbles, part_of_bubbles, reversed_bubbles};
+pub use ceiling::{
+    irregular, irregularity_bound, quads_by_table, scaled_jacobian_ceiling, Irregular, IrregularityBound,
+};
+pub use exact_curve::{CallerPlace, DomainCurve, ExactCurve, TableCurve};
 pub use geometry::Geometry;
+pub use measures::{ElementMeasures, Quality};
 pub use quad_mesh::{Edge, QuadMesh, Vertex};
 
 use crate::numerics::Point;
@@ -26,7 +52,8 @@ pub struct MeshEdge {
     pub boundary: u32,
     /// Boundary edges: the loop they lie on; `NONE` inside.
     pub loop_index: u32,
-    /// Boundary edges: the loop's segment and its parameter at each end.
+    /// Boundary edges: the loop's segment and its parameter at each end, as the caller has them (the
+    /// parameter falls where the caller walked the loop the other way).
     pub segments: [u32; 2],
     pub parameters: [f64; 2],
     /// Boundary edges: the error in the chosen norm, in the caller's unit; else 0.

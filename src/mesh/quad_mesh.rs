@@ -1,5 +1,6 @@
 //! The mesh that refinement and smoothing change.
 
+use super::reversed_bubbles;
 use crate::domain::{Boundary, Place, Span};
 use crate::numerics::{Point, Vector, NONE};
 use std::collections::HashMap;
@@ -48,6 +49,9 @@ impl QuadMesh {
         region: Vec<u32>,
         shapes: &HashMap<[u32; 2], Vec<Vector>>,
     ) -> Result<QuadMesh, (String, Point)> {
+        if quads.iter().flatten().any(|v| *v as usize >= vertices.len()) {
+            return Err(("a quad has a vertex that does not exist".into(), Point::origin()));
+        }
         let mut edges: Vec<Edge> = Vec::with_capacity(2 * quads.len() + 8);
         let mut known: HashMap<[u32; 2], u32> = HashMap::with_capacity(2 * quads.len() + 8);
         let mut quad_edges = Vec::with_capacity(quads.len());
@@ -77,10 +81,7 @@ impl QuadMesh {
                         known.insert([a.min(b), a.max(b)], e);
                         let bubbles = match (shapes.get(&[a, b]), shapes.get(&[b, a])) {
                             (Some(c), _) => c.clone(),
-                            // Reversed: the bubble of degree m has the parity of m.
-                            (None, Some(c)) => {
-                                c.iter().enumerate().map(|(m, v)| if m % 2 == 0 { *v } else { -*v }).collect()
-                            }
+                            (None, Some(c)) => reversed_bubbles(c),
                             _ => Vec::new(),
                         };
                         edges.push(Edge { vertices: [a, b], quads: [q as u32, NONE], span: None, bubbles });

@@ -5,6 +5,7 @@ pub mod bernstein;
 pub mod gauss_lobatto;
 pub mod interpolation;
 pub mod quadrature;
+pub mod sparse;
 pub mod tolerances;
 pub mod transfinite;
 

@@ -24,6 +24,104 @@ pub const LONGEST_LOOP_SHARE: f64 = 1.0 / 3.0;
 
 /// Share of the boundary tolerance that placement aims at, so that vertices may still slide.
 pub const PLACEMENT_MARGIN: f64 = 0.9;
+/// Usual base edge, relative to the domain's diagonal. About 1/28 resolves the field of simple shapes;
+/// the odd digits keep sides of simple ratio (1/2, 1/√2) away from a tie.
+pub const BASE_EDGE_DIAGONAL: f64 = 1.0 / 27.37;
+
+/// Usual base edge, relative to the square root of the domain's area: long thin domains need
+/// more triangles than their diagonal tells.
+pub const BASE_EDGE_AREA: f64 = 1.0 / 16.23;
+
+/// Most that the boundary may turn along one chord of the base mesh, in radians. Coarser than
+/// 0.3 loses the field's rotation around airfoil noses.
+pub const CHORD_TURN: f64 = 0.21;
+
+/// Most that the two chords at a corner may turn, as a share of the corner's angle: the polygon's
+/// corner must stay like the boundary's.
+pub const CORNER_CHORD_TURN: f64 = 0.31;
+
+/// Largest ratio of the lengths of neighbouring chords.
+pub const CHORD_RATIO: f64 = 2.6;
+
+/// Height of the arc over its chord, relative to the gap to the boundary across, above which
+/// the chord is halved: below, the polygon's gap is the boundary's within a fifth.
+pub const CHORD_SAGITTA: f64 = 0.11;
+
+/// Border vertices of the base mesh lie on a grid of this spacing, relative to the diagonal, so that
+/// rounding noise in the input leaves the base mesh the same to the bit. 2^-26.
+pub const SNAP_GRID: f64 = 1.0 / 67_108_864.0;
+
+/// Chord length, relative to the diagonal, below which border vertices are not moved to the grid:
+/// there the grid would turn chords by more than 1e-3 rad.
+pub const SNAP_LEAST_CHORD: f64 = 1e-5;
+
+/// Least angle asked of the base triangles, in degrees; Delaunay refinement ends for sure
+/// below about 20.7° and in practice up to 30°.
+pub const BASE_ANGLE: f64 = 26.0;
+
+/// Corner angle in radians (45°) below which the field gets no quad there: the tip's region
+/// is a triangle, which the layout repairs by the paper's rule.
+pub const TIP_ANGLE: f64 = std::f64::consts::FRAC_PI_4;
+
+/// Width of a tie in Table 1, in quarter turns: at exactly 45°, 135°, 225° and 315° rounding noise
+/// must not choose the number of quads.
+pub const CORNER_TIE: f64 = 1e-6;
+
+/// Diffusion time of one diffuse-and-renormalise step, relative to the square of the domain's local
+/// thickness. Five times less leaves pairs of opposite singularities between tubes (118 among 100 tubes), some
+/// times more only brings back the harmonic field, with its pairs.
+pub const DIFFUSION_TIME: f64 = 0.06;
+
+/// Number of diffuse-and-renormalise steps: 5 leave 29 pairs among 100 tubes, 10 leave 2.
+pub const DIFFUSION_STEPS: usize = 10;
+
+/// Farthest that the sum of the turns around a base triangle may be from whole quarter turns, in radians.
+/// Rounding leaves about 1e-14.
+pub const WINDING_ROUNDING: f64 = 1e-6;
+
+/// Least barycentric coordinate of a singular point in its triangle, so that its ports stay apart.
+pub const SINGULAR_BARYCENTRIC: f64 = 0.1;
+
+/// Least distance of a port from the triangle's corners, as a share of the edge.
+pub const PORT_SHARE: f64 = 1e-3;
+
+/// Distance between singularities of equal sign, in local edge lengths, below which the base mesh is
+/// refined between them.
+pub const LIKE_SIGN_EDGES: f64 = 2.0;
+
+/// Most that the cross may turn along a base edge at the border, in radians, where no singularity
+/// is: beyond, the edge's turn is close to the tie at 45°.
+pub const BORDER_EDGE_TURN: f64 = 0.6;
+
+/// Base edge, relative to the usual one, below which no check asks for refinement: singularities
+/// of a multiple zero come closer with every refinement.
+pub const LEAST_REFINEMENT: f64 = 1.0 / 12.0;
+
+/// Corner angle in radians (60°) below which Delaunay refinement cannot enforce its angle bound: base
+/// triangles at such tips are left as they are.
+pub const SHARP_TIP: f64 = std::f64::consts::FRAC_PI_3;
+/// Largest difference between the layout regions' areas and the domain's, relative to the domain's area:
+/// traces and base mesh are polygons, so areas agree only roughly; a region counted twice or missing
+/// differs by more.
+pub const LAYOUT_AREA: f64 = 0.05;
+
+/// Largest distance of a boundary vertex from the point of its place, relative to the domain's
+/// diagonal: both are evaluations of the same table, or of the exact curve beside it.
+pub const PLACE_DISTANCE: f64 = 1e-9;
+
+/// Largest difference of arc lengths that are the same place, relative to the domain's diagonal.
+pub const SPAN_GAP: f64 = 1e-12;
+
+/// Corner angles (32° to 58°) across which the cross turns by 32° or more: near 45° both senses of that turn
+/// cost the same.
+pub const TIP_DOUBT: [f64; 2] = [0.558, 1.012];
+
+/// How far from such a corner the field is held on the corner's own solution, relative to the shorter side.
+/// The singular point of a corner just above 45° settles there, so it sets the tip's element size.
+pub const TIP_SHARE: f64 = 0.25;
+
+/// Most that a side may turn within that distance, in radians.
+pub const TIP_TURN: f64 = 0.1;
 /// Gap at a joint, relative to the domain's diagonal, that is mere rounding: which of the two ends
 /// moves is then decided in the normalised orientation, so that loops given backwards agree.
 pub const JOIN_ROUNDING: f64 = 1e-12;
@@ -53,3 +151,16 @@ pub const TABLE_ERROR: f64 = 1e-11;
 /// Table intervals shorter than this, relative to the canonical diagonal, are not divided further: a
 /// singular parametrisation ends somewhere.
 pub const TABLE_SHORTEST: f64 = 1e-9;
+
+/// Distance from the tip of a cusp, relative to the smaller of its two segments, within which its branches may
+/// come closer than the touching distance: with any visible difference of curvature they are further apart beyond.
+pub const CUSP_REACH: f64 = 1e-2;
+/// Distance along the tangent, relative to the domain's diagonal, at which a point of the exact curve
+/// is at the wanted arc length: a few roundings of a coordinate.
+pub const EXACT_FOOT: f64 = 1e-15;
+
+/// Arc length, relative to the canonical diagonal, to which a curve's parameter is found for a given arc length.
+pub const ARC_LENGTH_MATCH: f64 = 1e-13;
+
+/// Relative difference of area and of its moments below which two loops that meet are the same.
+pub const SAME_MOMENTS: f64 = 1e-6;

@@ -6,7 +6,7 @@
 //! The tolerance belongs to a chain, not to an edge: a chain needs at least [`least_pieces`] edges, and
 //! [`place_equal_error`] puts the vertices of any larger number where all edges have the same
 //! error (de Boor's equidistribution, *Good approximation by splines with variable knots*, 1973).
-//! [`place_by_halving`] is the paper's own rule (Algorithm 1).
+//! [`place_by_halving`] is the paper's own rule (Algorithm 1), [`subdivide`] the same on a mesh.
 //!
 //! [`coarsen`] takes a valid mesh that is finer than it need be and removes chords and diagonals,
 //! re-optimising round each, while the tolerance and the quality hold.
@@ -15,16 +15,20 @@ mod chords;
 mod coarsen;
 mod collapse;
 mod halving;
+mod meet;
 mod pieces;
 mod placement;
 mod respace;
 mod split;
 mod stars;
+mod subdivide;
 mod trial;
 
 pub use coarsen::coarsen;
 pub use halving::place_by_halving;
+pub use meet::meet_tolerance;
 pub use pieces::least_pieces;
 pub use placement::{place_equal_error, Placement};
-pub use split::split_chord;
+pub use split::split_chords;
+pub use subdivide::subdivide;
 pub use trial::Limits;

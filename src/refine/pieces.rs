@@ -43,7 +43,8 @@ pub(super) fn longest_piece(
 ) -> Option<f64> {
     let exponent = 1.0 / growth(error);
     // (length, error) of the longest good and the shortest bad edge so far.
-    let (mut good, mut bad): (Option<(f64, f64)>, Option<(f64, f64)>) = (None, None);
+    let mut good: Option<(f64, f64)> = None;
+    let mut bad: Option<(f64, f64)> = None;
     let whole = limit - from;
     let mut length = guess.min(whole);
     for step in 0..SEARCH_STEPS {

@@ -19,8 +19,10 @@ pub struct Placement {
 const ROUNDS: usize = 12;
 /// Equidistribution has converged when no vertex moves by more than this share of its edge.
 const SETTLED: f64 = 0.02;
-/// The bisection on the common error stops at this ratio of its brackets.
+/// The bisection on the common error stops at this ratio of its brackets ...
 const LEVEL_RATIO: f64 = 1.02;
+/// ... and when the margin is kept anyway at this one.
+const SPARE_RATIO: f64 = 2.0;
 /// Share of the edges that is always spread evenly, so that straight parts get vertices as well.
 const EVEN_SHARE: f64 = 0.03;
 
@@ -133,24 +135,30 @@ fn equidistribute(chain: &Chain, error: &BoundaryError, start: f64, pieces: usiz
     best.unwrap_or(Placement { positions, largest: f64::INFINITY })
 }
 
-/// The smallest common error, by bisection, for which greedily longest edges need no more than `pieces`;
+/// Greedily longest edges of a common error for which `pieces` are enough, found by bisection on the error;
 /// edges left over halve the longest ones. Always finds what [`greedy`] finds at the tolerance.
 fn common_level(chain: &Chain, error: &BoundaryError, start: f64, pieces: usize) -> Option<Placement> {
     let end = start + chain.length;
     let at = |level: f64| greedy(chain, error, start, end, level, pieces);
-    let mut high = error.tolerance.value;
+    let mut high = PLACEMENT_MARGIN * error.tolerance.value;
     let mut found = at(high);
+    // Only as exact as the use: with the margin any level will do that leaves few edges over,
+    // without it the least one is wanted.
+    let (mut low, ratio) = if found.is_some() { (high / 1024.0, SPARE_RATIO) } else { (high, LEVEL_RATIO) };
+    if found.is_none() {
+        high = error.tolerance.value;
+        found = at(high);
+    }
     // Fewer edges than the tolerance needs: the level that they can have lies above it.
     for _ in 0..40 {
         if found.is_some() {
             break;
         }
-        high *= 8.0;
+        (low, high) = (high, high * 8.0);
         found = at(high);
     }
     let mut found = found?;
-    let mut low = high / 64.0;
-    while high / low > LEVEL_RATIO {
+    while high / low > ratio && !(high <= PLACEMENT_MARGIN * error.tolerance.value && found.len() > pieces) {
         let middle = (high * low).sqrt();
         match at(middle) {
             Some(positions) => (high, found) = (middle, positions),

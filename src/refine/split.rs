@@ -1,144 +1,119 @@
-//! Splitting a chord: every edge across it is halved, every quad along it becomes two.
-//!
-//! The paper's step 7 divides boundary edges; the mesh stays conforming because the division is carried
-//! along the chord to its other end. New edges between the halves start straight or along
-//! the middle of their quads; the optimiser gives them their shape.
+//! Splitting edges at the middle, carried through the mesh along their chords.
 
-use super::chords::{chord_through, side_of};
 use crate::domain::{Boundary, BoundaryPoint, Place};
-use crate::mesh::{QuadMesh, Vertex};
-use crate::numerics::{Point, Vector};
+use crate::mesh::{bubble_shape, part_of_bubbles, reversed_bubbles, QuadMesh, Vertex};
+use crate::numerics::{Point, Vector, NONE};
 use std::collections::HashMap;
 
-/// Splits the chord through `edge` at share `share` (in (0, 1), of each rung from the chord's side
-/// on which the edge's first vertex lies). The new mesh keeps the numbers of old vertices; `None` if the
-/// chord crosses itself (split another one first) or has no interior to split.
-pub fn split_chord(boundary: &Boundary, mesh: &QuadMesh, edge: u32, share: f64) -> Option<QuadMesh> {
-    let chord = chord_through(mesh, edge);
-    let mut of_quad: HashMap<u32, u32> = HashMap::new();
-    for (k, q) in chord.quads.iter().enumerate() {
-        if of_quad.insert(*q, k as u32).is_some() {
-            return None;
-        }
-    }
-    // Which end of each rung is on the side of `edge`'s first vertex: carried along from quad to quad.
-    let from = chord.rungs.iter().position(|e| *e == edge)?;
-    let mut first = vec![0u32; chord.rungs.len()];
-    first[from] = mesh.edges[edge as usize].vertices[0];
-    let carry = |k: usize, next: usize, quad: u32, first: &mut [u32]| {
-        let (i, corners) = (side_of(mesh, quad, chord.rungs[k]), mesh.quads[quad as usize]);
-        // Side i runs from corner i to i + 1; the opposite one from i + 3 to i + 2 on the same sides.
-        first[next] = if corners[i] == first[k] { corners[(i + 3) % 4] } else { corners[(i + 2) % 4] };
-    };
-    for k in from..chord.rungs.len() - 1 {
-        carry(k, k + 1, chord.quads[k], &mut first);
-    }
-    for k in (0..from).rev() {
-        carry(k + 1, k, chord.quads[k], &mut first);
-    }
+/// Splits the edges in `marked` (one entry an edge) at the middle, and every edge of their chords: so
+/// the mesh stays conforming. A quad that chords cross one way becomes two, both ways four. New edges
+/// follow the transfinite map of the quad they cut, halves of edges keep their shape; `order` is the
+/// number of degrees a boundary edge's shape is carried inside with.
+///
+/// # Errors
+/// A defect in words and where, as [`QuadMesh::new`].
+pub fn split_chords(
+    mesh: &QuadMesh,
+    boundary: &Boundary,
+    marked: &[bool],
+    order: usize,
+) -> Result<QuadMesh, (String, Point)> {
+    let split = whole_chords(mesh, marked);
+    let count = order.saturating_sub(1);
     let mut vertices = mesh.vertices.clone();
-    let mut middle: HashMap<u32, u32> = HashMap::new();
-    let mut shapes: HashMap<[u32; 2], Vec<Vector>> = HashMap::with_capacity(mesh.edges.len());
-    for e in mesh.edges.iter().filter(|e| e.span.is_none()) {
-        shapes.insert(e.vertices, e.bubbles.clone());
-    }
-    for (rung, first) in chord.rungs.iter().zip(&first) {
-        let own = &mesh.edges[*rung as usize];
-        let t = if own.vertices[0] == *first { share } else { 1.0 - share };
-        let new = vertices.len() as u32;
-        middle.insert(*rung, new);
-        if let Some(span) = own.span {
-            let curve = &boundary.chains[span.chain as usize];
-            let s = curve.wrap(span.start + t * (span.end - span.start));
-            let place = Place::Boundary(BoundaryPoint { chain: span.chain, s });
-            vertices.push(Vertex { point: curve.point(s), place });
-        } else {
-            let ends = own.vertices.map(|v| mesh.vertices[v as usize].point.coords);
-            vertices.push(Vertex {
-                point: Point::from(curve_point(ends, &own.bubbles, t)),
-                place: Place::Interior,
-            });
-            shapes.insert([own.vertices[0], new], part(&own.bubbles, 0.0, t));
-            shapes.insert([new, own.vertices[1]], part(&own.bubbles, t, 1.0));
+    let mut shapes: HashMap<[u32; 2], Vec<Vector>> = HashMap::new();
+    // The vertex at the middle of each split edge.
+    let mut middle = vec![NONE; mesh.edges.len()];
+    for (e, edge) in mesh.edges.iter().enumerate() {
+        if !split[e] {
+            shapes.insert(edge.vertices, edge.bubbles.clone());
+            continue;
         }
-    }
-    let (mut quads, mut region) = (mesh.quads.clone(), mesh.region.clone());
-    for (k, q) in chord.quads.iter().enumerate() {
-        let (a, b) = (chord.rungs[k], chord.rungs[(k + 1) % chord.rungs.len()]);
-        let i = side_of(mesh, *q, a);
-        let c = mesh.quads[*q as usize];
-        let (m, n) = (middle[&a], middle[&b]);
-        quads[*q as usize] = [c[i], m, n, c[(i + 3) % 4]];
-        quads.push([m, c[(i + 1) % 4], c[(i + 2) % 4], n]);
-        region.push(mesh.region[*q as usize]);
-        // The new edge bends as the two sides along the chord do, on average.
-        let toward = |side: usize, start: u32| {
-            let own = &mesh.edges[mesh.quad_edges[*q as usize][side] as usize];
-            let flip = own.vertices[0] != start;
-            let sign = |m: usize| if flip && m % 2 == 1 { -1.0 } else { 1.0 };
-            own.bubbles.iter().enumerate().map(|(m, c)| c * sign(m)).collect::<Vec<_>>()
+        let place = match edge.span {
+            Some(span) => {
+                let s = boundary.chains[span.chain as usize].wrap(0.5 * (span.start + span.end));
+                Place::Boundary(BoundaryPoint { chain: span.chain, s })
+            }
+            None => Place::Interior,
         };
-        let (left, right) = (toward((i + 1) % 4, c[(i + 1) % 4]), toward((i + 3) % 4, c[i]));
-        let at = |list: &[Vector], m: usize| list.get(m).copied().unwrap_or_else(Vector::zeros);
-        let mean = (0..left.len().max(right.len())).map(|m| (at(&left, m) + at(&right, m)) * 0.5).collect();
-        shapes.insert([m, n], mean);
+        middle[e] = vertices.len() as u32;
+        vertices.push(Vertex { point: mesh.edge_middle(boundary, e), place });
+        let [a, b] = edge.vertices;
+        shapes.insert([a, middle[e]], part_of_bubbles(&edge.bubbles, -1.0, 0.0));
+        shapes.insert([middle[e], b], part_of_bubbles(&edge.bubbles, 0.0, 1.0));
     }
-    QuadMesh::new(boundary, vertices, quads, region, &shapes).ok()
+    let mut quads = Vec::with_capacity(mesh.quads.len() + split.len());
+    let mut region = Vec::with_capacity(quads.capacity());
+    for (q, (quad, edges)) in mesh.quads.iter().zip(&mesh.quad_edges).enumerate() {
+        let ways = [split[edges[0] as usize], split[edges[1] as usize]];
+        // The shape of side s walked from its corner `from_corner`.
+        let side = |s: usize, from_corner: usize| {
+            let e = edges[s] as usize;
+            let shape = mesh.shape(boundary, e, count);
+            if mesh.edges[e].vertices[0] == quad[from_corner] {
+                shape
+            } else {
+                reversed_bubbles(&shape)
+            }
+        };
+        // From the middle of side s to that of side s + 2: the mean of the sides beside it.
+        let across = |s: usize| mean(&side((s + 1) % 4, (s + 1) % 4), &side((s + 3) % 4, s));
+        let middles = edges.map(|e| middle[e as usize]);
+        match ways {
+            [false, false] => quads.push(*quad),
+            [true, true] => {
+                let lines = [across(0), across(1)];
+                let [m0, m1, m2, m3] = middles;
+                let [p, r] = [m0, m2].map(|m| vertices[m as usize].point);
+                let center = vertices.len() as u32;
+                let point = nalgebra::center(&p, &r) + bubble_shape(&lines[0], 0.0);
+                vertices.push(Vertex { point, place: Place::Interior });
+                for (line, ends) in lines.iter().zip([[m0, m2], [m1, m3]]) {
+                    shapes.insert([ends[0], center], part_of_bubbles(line, -1.0, 0.0));
+                    shapes.insert([center, ends[1]], part_of_bubbles(line, 0.0, 1.0));
+                }
+                let [a, b, c, d] = *quad;
+                quads.extend([
+                    [a, m0, center, m3],
+                    [m0, b, m1, center],
+                    [center, m1, c, m2],
+                    [m3, center, m2, d],
+                ]);
+            }
+            [first, _] => {
+                let s = if first { 0 } else { 1 };
+                let [a, b, c, d] = [0, 1, 2, 3].map(|k| quad[(s + k) % 4]);
+                let (from, to) = (middles[s], middles[s + 2]);
+                shapes.insert([from, to], across(s));
+                quads.extend([[a, from, to, d], [from, b, c, to]]);
+            }
+        }
+        region.resize(quads.len(), mesh.region[q]);
+    }
+    QuadMesh::new(boundary, vertices, quads, region, &shapes)
 }
 
-/// Bubbles as a polynomial: coefficients in powers of τ of the offset from the straight edge.
-fn powers(bubbles: &[Vector]) -> Vec<Vector> {
-    let mut sum = vec![Vector::zeros(); bubbles.len() + 2];
-    // Shifted Legendre polynomials P_m(2τ − 1) in powers of τ, by the three-term recurrence.
-    let (mut p, mut before) = (vec![1.0], Vec::new());
-    for (m, c) in bubbles.iter().enumerate() {
-        for (k, a) in p.iter().enumerate() {
-            sum[k + 1] += c * (4.0 * a);
-            sum[k + 2] -= c * (4.0 * a);
-        }
-        let mf = m as f64;
-        let mut next = vec![0.0; p.len() + 1];
-        for (k, a) in p.iter().enumerate() {
-            next[k + 1] += 2.0 * (2.0 * mf + 1.0) / (mf + 1.0) * a;
-            next[k] -= (2.0 * mf + 1.0) / (mf + 1.0) * a;
-        }
-        for (k, a) in before.iter().enumerate() {
-            next[k] -= mf / (mf + 1.0) * a;
-        }
-        before = std::mem::replace(&mut p, next);
-    }
-    sum
+/// Half the sum of two shapes of any number of bubbles.
+fn mean(a: &[Vector], b: &[Vector]) -> Vec<Vector> {
+    let get = |list: &[Vector], m: usize| list.get(m).copied().unwrap_or_else(Vector::zeros);
+    (0..a.len().max(b.len())).map(|m| (get(a, m) + get(b, m)) * 0.5).collect()
 }
 
-fn curve_point([a, b]: [Vector; 2], bubbles: &[Vector], t: f64) -> Vector {
-    let offset = powers(bubbles).iter().rev().fold(Vector::zeros(), |sum, c| sum * t + c);
-    a + (b - a) * t + offset
-}
-
-/// Bubbles of the part [from, to] of an edge with `bubbles`: exact, since the space of bubbles is that
-/// of all polynomials that vanish at both ends.
-fn part(bubbles: &[Vector], from: f64, to: f64) -> Vec<Vector> {
-    let n = bubbles.len();
-    if n == 0 {
-        return Vec::new();
+/// Marks all edges of the chords of the marked edges.
+fn whole_chords(mesh: &QuadMesh, marked: &[bool]) -> Vec<bool> {
+    let mut split = vec![false; mesh.edges.len()];
+    let mut stack: Vec<u32> =
+        (0..mesh.edges.len()).filter(|e| marked.get(*e) == Some(&true)).map(|e| e as u32).collect();
+    stack.iter().for_each(|e| split[*e as usize] = true);
+    while let Some(e) = stack.pop() {
+        for q in mesh.edges[e as usize].quads.into_iter().filter(|q| *q != NONE) {
+            let sides = &mesh.quad_edges[q as usize];
+            let opposite = (0..4).find(|s| sides[*s] == e).map(|s| sides[(s + 2) % 4]);
+            if let Some(o) = opposite.filter(|o| !split[*o as usize]) {
+                split[o as usize] = true;
+                stack.push(o);
+            }
+        }
     }
-    let p = powers(bubbles);
-    let offset = |t: f64| p.iter().rev().fold(Vector::zeros(), |sum, c| sum * t + c);
-    let (first, last) = (offset(from), offset(to));
-    // Collocation at n inner points.
-    let points: Vec<f64> =
-        (0..n).map(|k| 0.5 - 0.5 * (std::f64::consts::PI * (k as f64 + 0.5) / n as f64).cos()).collect();
-    let legendre = |m: usize, x: f64| crate::numerics::legendre(m, x).0;
-    let matrix = nalgebra::DMatrix::from_fn(n, n, |k, m| {
-        4.0 * points[k] * (1.0 - points[k]) * legendre(m, 2.0 * points[k] - 1.0)
-    });
-    let right = nalgebra::DMatrix::from_fn(n, 2, |k, axis| {
-        let t = points[k];
-        let straight = first[axis] * (1.0 - t) + last[axis] * t;
-        offset(from + (to - from) * t)[axis] - straight
-    });
-    match matrix.lu().solve(&right) {
-        Some(x) => (0..n).map(|m| Vector::new(x[(m, 0)], x[(m, 1)])).collect(),
-        None => Vec::new(),
-    }
+    split
 }

@@ -1,8 +1,10 @@
 //! Boundaries made by hand, for tests of the stages that only need chains.
 #![allow(dead_code)]
 
-use quadrel::domain::{Boundary, Chain, Frame, Junction, Sample};
+use quadrel::domain::{Boundary, BoundaryPoint, Chain, Frame, Junction, Place, Sample};
+use quadrel::mesh::{QuadMesh, Vertex};
 use quadrel::numerics::{cross, GaussLegendre, Point, Vector};
+use std::collections::HashMap;
 
 /// A curve over t in [0, 1] with its derivative.
 pub type CurveFn<'a> = &'a dyn Fn(f64) -> (Point, Vector);
@@ -42,6 +44,8 @@ pub fn boundary(loops: Vec<Vec<Chain>>) -> Boundary {
         junctions: Vec::new(),
         loops: Vec::new(),
         area: 0.0,
+        loop_sources: (0..loops.len() as u32).collect(),
+        diagonal: 1.0,
     };
     for (l, chains) in loops.into_iter().enumerate() {
         let first = b.chains.len() as u32;
@@ -122,4 +126,45 @@ pub fn wavy_spline(n: usize, amplitude: f64) -> impl Fn(f64) -> (Point, Vector) 
         }
         (Point::from(p), d)
     }
+}
+
+/// The disc of radius 1 in the canonical frame of diagonal 1 (its own frame: turned and moved), with an
+/// O-grid of 12 quads: 2 × 2 inside, 8 around. `inner` is the radius of the inner block's corners.
+pub fn disc_o_grid(inner: f64) -> (Boundary, QuadMesh) {
+    let r = 1.0 / 8f64.sqrt();
+    let mut b = boundary(vec![vec![chain(&ellipse(r, r), 4000, true, &[])]]);
+    b.frame = Frame { origin: Point::new(5.0, -3.0), scale: 8f64.sqrt(), axis: Vector::new(0.6, 0.8) };
+    let mesh = o_grid(&b, inner);
+    (b, mesh)
+}
+
+/// An O-grid of 12 quads in a convex domain of one closed chain round the origin: the inner block's
+/// corners are boundary points scaled by `inner`, its mid-points by 0.85 of that.
+pub fn o_grid(b: &Boundary, inner: f64) -> QuadMesh {
+    let length = b.chains[0].length;
+    let on_boundary = |k: usize| b.chains[0].point(length * k as f64 / 8.0);
+    let mut vertices: Vec<Vertex> = (0..8)
+        .map(|k| {
+            let s = length * k as f64 / 8.0;
+            Vertex { point: on_boundary(k), place: Place::Boundary(BoundaryPoint { chain: 0, s }) }
+        })
+        .collect();
+    let inside = |point| Vertex { point, place: Place::Interior };
+    vertices.extend((0..8).map(|k| inside(on_boundary(k) * if k % 2 == 1 { inner } else { 0.85 * inner })));
+    vertices.push(inside(Point::origin()));
+    let mut quads: Vec<[u32; 4]> = (0..8u32).map(|k| [8 + k, k, (k + 1) % 8, 8 + (k + 1) % 8]).collect();
+    quads.extend((0..4u32).map(|c| {
+        let k = 2 * c;
+        [16, 8 + k, 8 + k + 1, 8 + (k + 2) % 8]
+    }));
+    let region = vec![0; quads.len()];
+    QuadMesh::new(b, vertices, quads, region, &HashMap::new()).unwrap()
+}
+
+/// The polygon with the given corners, counter-clockwise, one straight chain a side.
+pub fn polygon(corners: &[[f64; 2]]) -> Boundary {
+    let sides = (0..corners.len())
+        .map(|k| chain(&segment(corners[k], corners[(k + 1) % corners.len()]), 4, false, &[]))
+        .collect();
+    boundary(vec![sides])
 }

@@ -1,0 +1,95 @@
+//! The paper's algorithm, steps 0 to 9.
+//!
+//! B. Yuan and D. A. Kopriva, *Automatic quad mesh generation for spectral methods*: a cross field
+//! gives the blocks of a few large curved quadrilaterals; their boundary edges are divided until order-N
+//! interpolation meets the tolerance.
+
+mod blocks;
+mod rounds;
+mod watch;
+
+use crate::domain::{Boundary, Domain};
+use crate::error::{Error, Result};
+use crate::mesh::{BoundaryTolerance, HighOrderMesh};
+use crate::options::Options;
+use crate::progress::Stage;
+use crate::stages::Stages;
+use watch::Watch;
+
+/// Base meshes tried, each finer than the one before, until blocks and elements come out right.
+const ATTEMPTS: usize = 5;
+
+/// Share of the tolerance that the stages aim at: they measure on the boundary's tables, at their
+/// quadrature points, and the last optimisation may use all of what they allow.
+const TOLERANCE_AIM: f64 = 0.97;
+
+/// Meshes `domain`. `stages` keeps what every stage made, also on failure.
+///
+/// # Errors
+/// A variant of [`Error`] for each cause, with the place in the caller's coordinates.
+///
+/// # Example
+/// ```
+/// use quadrel::{domain::Domain, generate, stages::Stages, Options};
+/// let mut builder = Domain::builder();
+/// builder.begin_loop(quadrel::domain::LoopKind::Outer, "wall")?;
+/// builder.add_arc([0.0, 0.0], 1.0, 0.0, 2.0 * std::f64::consts::PI, "")?;
+/// builder.end_loop()?;
+/// let disc = builder.build()?;
+/// let mesh = generate(&disc, &Options::default(), &mut Stages::default())?;
+/// assert!(mesh.elements.len() <= 12);
+/// # Ok::<(), quadrel::Error>(())
+/// ```
+pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Result<HighOrderMesh> {
+    options.check()?;
+    *stages = Stages::default();
+    let mut watch = Watch::new(options);
+
+    // Step 0: boundary, order, tolerance.
+    let boundary = watch.run(stages, Stage::Domain, |stages| {
+        stages.warnings.extend(domain.warnings.iter().cloned());
+        Boundary::new(domain)
+    })?;
+    stages.boundary = Some(boundary.clone());
+    let tolerance = BoundaryTolerance::new(options, &boundary);
+
+    let mut failure = None;
+    let mut request = blocks::first_request(options, &boundary);
+    for _ in 0..ATTEMPTS {
+        match steps_1_to_9(domain, &boundary, options, &tolerance, &mut request, &mut watch, stages) {
+            Ok(mesh) => return Ok(mesh),
+            Err(error @ (Error::Cancelled | Error::Callback { .. })) => return Err(error),
+            Err(error) => {
+                let error = error.map_place(|p| boundary.frame.to_caller(p));
+                failure.get_or_insert(error);
+            }
+        }
+        blocks::refine(&mut request, &boundary);
+    }
+    Err(failure.unwrap_or(Error::Cancelled))
+}
+
+fn steps_1_to_9(
+    domain: &Domain,
+    boundary: &Boundary,
+    options: &Options,
+    tolerance: &BoundaryTolerance,
+    request: &mut crate::base_mesh::Request,
+    watch: &mut Watch,
+    stages: &mut Stages,
+) -> Result<HighOrderMesh> {
+    // Steps 1 to 3: base mesh, cross field, singularities; refined until the index theorem holds.
+    let field = blocks::field(boundary, options, request, watch, stages)?;
+
+    // What the stages aim at; the final mesh is measured against the tolerance itself.
+    let aim = &BoundaryTolerance { value: TOLERANCE_AIM * tolerance.value, ..*tolerance };
+
+    // Steps 4 to 6: separatrices, quad-dominant regions, repair.
+    let layout = blocks::layout(boundary, options, aim, &field, watch, stages)?;
+
+    // Steps 7 to 9: subdivide and smooth until every boundary edge meets the tolerance.
+    let mesh = rounds::refine_and_smooth(boundary, options, aim, &layout, watch, stages)?;
+
+    // The proof: curved elements of order N with positive Jacobians, on the exact curves.
+    watch.run(stages, Stage::Mesh, |_| HighOrderMesh::new(&mesh, boundary, domain, tolerance))
+}

@@ -1,0 +1,122 @@
+//! Steps 1 to 6: from the boundary to conforming blocks.
+
+use super::watch::Watch;
+use crate::base_mesh::{self, ElementSize, Request, Triangulation};
+use crate::cross_field::{self, CrossField};
+use crate::domain::Boundary;
+use crate::error::{Error, Result};
+use crate::layout::{self, t_mesh, QuadLayout, Targets};
+use crate::mesh::{BoundaryError, BoundaryTolerance};
+use crate::numerics::tolerances::LEAST_REFINEMENT;
+use crate::options::Options;
+use crate::progress::Stage;
+use crate::refine::least_pieces;
+use crate::separatrices;
+use crate::singularities::{self, CornerFan, Singularity};
+use crate::stages::Stages;
+
+/// Rounds of local refinement that the gate may ask for on one base mesh size.
+const GATE_ROUNDS: usize = 6;
+/// Rounds of seed rays for regions with two tips.
+const SEED_ROUNDS: usize = 6;
+/// Edges a chain gets for each one that the tolerance needs: room for vertices that slide.
+const CHAIN_MARGIN: f64 = 1.2;
+/// Base size of the next attempt relative to the last.
+const FINER: f64 = 0.72;
+
+/// Steps 1 to 3.
+pub(super) struct Field {
+    pub mesh: Triangulation,
+    pub cross: CrossField,
+    pub singularities: Vec<Singularity>,
+    pub corners: Vec<CornerFan>,
+}
+
+pub(super) fn first_request(options: &Options, boundary: &Boundary) -> Request {
+    Request { size: options.base_mesh_size.map(|h| h / boundary.frame.scale), refine: Vec::new() }
+}
+
+/// Asks for a finer base mesh everywhere.
+pub(super) fn refine(request: &mut Request, boundary: &Boundary) {
+    let size = request.size.unwrap_or_else(|| base_mesh::usual_size(boundary));
+    request.size = Some(size * FINER);
+}
+
+/// Base mesh, cross field and singularities, refined locally until the index theorem holds.
+pub(super) fn field(
+    boundary: &Boundary,
+    options: &Options,
+    request: &mut Request,
+    watch: &mut Watch,
+    stages: &mut Stages,
+) -> Result<Field> {
+    let usual = base_mesh::usual_size(boundary);
+    let least = LEAST_REFINEMENT * request.size.map_or(usual, |h| h.min(usual));
+    let mut round = 0;
+    loop {
+        let mesh = watch.run(stages, Stage::BaseMesh, |_| base_mesh::triangulate(boundary, request))?;
+        stages.triangulation = Some(mesh.clone());
+        let cross =
+            watch.run(stages, Stage::CrossField, |_| cross_field::solve(&mesh, boundary, options.field))?;
+        stages.cross_field = Some(cross.clone());
+        let found = singularities::find(&mesh, boundary, &cross);
+        let known = found.as_ref().map_or(&[][..], |(singularities, _)| singularities);
+        if let (Err(places), true) =
+            (singularities::gate(&mesh, boundary, &cross, known, least), round < GATE_ROUNDS)
+        {
+            request.refine.extend(places);
+            round += 1;
+            continue;
+        }
+        let (singularities, corners) = watch.run(stages, Stage::Singularities, |_| found)?;
+        stages.singularities = singularities.clone();
+        stages.corners = corners.clone();
+        return Ok(Field { mesh, cross, singularities, corners });
+    }
+}
+
+/// Separatrices, the T-mesh of regions, and its repair to conforming blocks.
+pub(super) fn layout(
+    boundary: &Boundary,
+    options: &Options,
+    tolerance: &BoundaryTolerance,
+    field: &Field,
+    watch: &mut Watch,
+    stages: &mut Stages,
+) -> Result<QuadLayout> {
+    let Field { mesh, cross, singularities, corners } = field;
+    let mut seeds = Vec::new();
+    let mut regions = None;
+    for _ in 0..SEED_ROUNDS {
+        let traces = watch.run(stages, Stage::Separatrices, |_| {
+            separatrices::trace(mesh, cross, boundary, singularities, corners, &seeds)
+        })?;
+        stages.separatrices = traces;
+        match t_mesh::build(boundary, singularities, corners, &stages.separatrices)? {
+            t_mesh::Traced::Layout(layout) => {
+                regions = Some(layout);
+                break;
+            }
+            t_mesh::Traced::Seeds(more) => seeds.extend(more),
+        }
+    }
+    let regions = regions
+        .ok_or_else(|| Error::Layout { reason: "a region between two sharp corners".into(), at: None })?;
+    stages.block_layout = Some(regions.clone());
+    let conforming = watch.run(stages, Stage::Layout, |_| {
+        let error = BoundaryError::new(*tolerance);
+        let mut minimum = Vec::with_capacity(boundary.chains.len());
+        for chain in &boundary.chains {
+            let least = least_pieces(chain, &error)?;
+            minimum.push(if least > 1 { (least as f64 * CHAIN_MARGIN).ceil() as u32 } else { 1 });
+        }
+        let most = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
+        let sizes = ElementSize::new(mesh, boundary, most);
+        let size = |p| sizes.at(p);
+        layout::conform(&regions, boundary, &Targets::new(&size, &minimum))
+    })?;
+    stages.block_layout = Some(conforming.repaired);
+    stages.fallback = stages.fallback.max(conforming.fallback);
+    stages.quad_layout = Some(conforming.layout.clone());
+    Ok(conforming.layout)
+}

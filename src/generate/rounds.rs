@@ -1,0 +1,101 @@
+//! Steps 7 to 9: subdivide, smooth, coarsen; repeat until every boundary edge meets the tolerance.
+
+use super::watch::Watch;
+use crate::domain::Boundary;
+use crate::error::{Error, Result};
+use crate::layout::QuadLayout;
+use crate::mesh::{BoundaryError, BoundaryTolerance, QuadMesh, Vertex};
+use crate::options::{Options, Subdivision};
+use crate::progress::Stage;
+use crate::refine::{self, Limits};
+use crate::smooth::{Effort, Optimiser};
+use crate::stages::{Round, Stages};
+use std::collections::HashMap;
+
+/// Most rounds of subdivision and smoothing.
+const ROUNDS: usize = 8;
+
+/// Makes the layout's quads curved elements that keep the tolerance.
+pub(super) fn refine_and_smooth(
+    boundary: &Boundary,
+    options: &Options,
+    tolerance: &BoundaryTolerance,
+    layout: &QuadLayout,
+    watch: &mut Watch,
+    stages: &mut Stages,
+) -> Result<QuadMesh> {
+    let error = BoundaryError::new(*tolerance);
+    let optimiser = Optimiser::new(boundary, options.order, Some(*tolerance));
+    let mut mesh = start(boundary, layout)?;
+    note(stages, &optimiser, &mesh, "layout");
+
+    for _ in 0..ROUNDS {
+        // Step 7: boundary vertices where the tolerance wants them; edges divided where that is not enough.
+        mesh =
+            watch.run(stages, Stage::Refine, |_| refine::meet_tolerance(mesh, boundary, &error, options))?;
+        note(stages, &optimiser, &mesh, "subdivide");
+        // Step 8: smooth, and untangle if need be.
+        let outcome =
+            watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut mesh, None, Effort::Full)))?;
+        note(stages, &optimiser, &mesh, "smooth");
+        // Step 9: until it holds.
+        if outcome.valid && outcome.error_ratio <= 1.0 {
+            break;
+        }
+        if !outcome.valid {
+            let quality = optimiser.quality(&mesh);
+            let inverted = |q: &usize| quality.elements[*q].jacobian_ratio <= 0.0;
+            let mut marked = vec![false; mesh.edges.len()];
+            for e in (0..mesh.quads.len()).filter(inverted).flat_map(|q| mesh.quad_edges[q]) {
+                marked[e as usize] = true;
+            }
+            mesh = watch.run(stages, Stage::Refine, |_| {
+                refine::split_chords(&mesh, boundary, &marked, options.order)
+                    .map_err(|(reason, at)| Error::Layout { reason, at: Some(at) })
+            })?;
+            note(stages, &optimiser, &mesh, "split inverted");
+        }
+    }
+    let quality = optimiser.quality(&mesh);
+    if !quality.valid() {
+        let worst = (0..mesh.quads.len())
+            .min_by(|&a, &b| {
+                quality.elements[a].scaled_jacobian.total_cmp(&quality.elements[b].scaled_jacobian)
+            })
+            .unwrap_or(0);
+        let at = mesh.vertices[mesh.quads[worst][0] as usize].point;
+        return Err(Error::InvalidElement { jacobian: quality.min_scaled_jacobian, at });
+    }
+    if options.subdivision == Subdivision::EqualError {
+        let limits = Limits::new(options.quality_floor);
+        mesh = watch.run(stages, Stage::Refine, |_| {
+            refine::coarsen(mesh, boundary, &optimiser, limits, &options.progress)
+        })?;
+        note(stages, &optimiser, &mesh, "coarsen");
+        watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut mesh, None, Effort::Full)))?;
+        note(stages, &optimiser, &mesh, "smooth");
+    }
+    Ok(mesh)
+}
+
+/// The layout as a mesh with straight interior edges.
+fn start(boundary: &Boundary, layout: &QuadLayout) -> Result<QuadMesh> {
+    let vertices = layout
+        .vertices
+        .iter()
+        .map(|v| Vertex { point: boundary.point(v.place).unwrap_or(v.point), place: v.place })
+        .collect();
+    QuadMesh::new(boundary, vertices, layout.quads.clone(), layout.region.clone(), &HashMap::new())
+        .map_err(|(reason, at)| Error::Layout { reason, at: Some(at) })
+}
+
+/// Notes what a round left.
+fn note(stages: &mut Stages, optimiser: &Optimiser, mesh: &QuadMesh, action: &'static str) {
+    let quality = optimiser.quality(mesh);
+    stages.rounds.push(Round {
+        action,
+        elements: mesh.quads.len(),
+        scaled_jacobian: quality.min_scaled_jacobian,
+        boundary_error: quality.error_ratio,
+    });
+}

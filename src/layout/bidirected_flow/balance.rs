@@ -1,0 +1,143 @@
+//! Cheapest walks in the double cover, and the first feasible point.
+
+use super::{BidirectedFlow, Obstruction, Step};
+use crate::numerics::NONE;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Cost of taking a unit from a general row that has none to spare.
+const ROW_PENALTY: i64 = 1_000_000_000;
+
+/// Cost and steps of a walk; or, if there is none, the states that were reached.
+pub(super) type Walk = Result<(i64, Vec<Step>), Vec<u32>>;
+
+impl BidirectedFlow {
+    /// Cheapest walk from `start` to a state that `is_goal` accepts; marginal costs below 0 count as 0.
+    /// `banned` variables are not lowered, and rows that have nothing to spare at a high price
+    /// only (they are satisfied anew afterwards). `Err`: the states that were reached.
+    pub(super) fn search(
+        &mut self,
+        start: u32,
+        is_goal: impl Fn(&Self, u32) -> bool,
+        banned: &[u32],
+    ) -> Walk {
+        let mut scratch = std::mem::take(&mut self.scratch);
+        scratch.round += 1;
+        let round = scratch.round;
+        let mut heap = BinaryHeap::new();
+        let mut reached = vec![start];
+        scratch.stamp[start as usize] = round;
+        scratch.distance[start as usize] = 0;
+        scratch.done[start as usize] = false;
+        scratch.parent[start as usize] = (NONE, NONE, 0);
+        heap.push(Reverse((0i64, start)));
+        let mut found = None;
+        while let Some(Reverse((d, s))) = heap.pop() {
+            if scratch.done[s as usize] {
+                continue;
+            }
+            scratch.done[s as usize] = true;
+            if s != start && is_goal(self, s) {
+                found = Some((d, s));
+                break;
+            }
+            self.transitions(s, |a, step, t| {
+                let mut cost = self.marginal(a, step).max(0) + 1;
+                if step < 0 {
+                    if self.values[a] <= self.variables[a].lower || banned.contains(&(a as u32)) {
+                        return;
+                    }
+                    for &r in &self.rows_of[a] {
+                        if self.row_sums[r as usize] <= self.rows[r as usize].at_least {
+                            cost += ROW_PENALTY * (1 + self.robbed[r as usize]);
+                        }
+                    }
+                }
+                let i = t as usize;
+                let fresh = scratch.stamp[i] != round;
+                if fresh || d + cost < scratch.distance[i] {
+                    if fresh {
+                        reached.push(t);
+                        scratch.done[i] = false;
+                    } else if scratch.done[i] {
+                        return;
+                    }
+                    scratch.stamp[i] = round;
+                    scratch.distance[i] = d + cost;
+                    scratch.parent[i] = (s, a as u32, step);
+                    heap.push(Reverse((d + cost, t)));
+                }
+            });
+        }
+        let result = match found {
+            None => Err(reached),
+            Some((d, goal)) => {
+                let mut steps = Vec::new();
+                let mut s = goal;
+                while s != start {
+                    let (p, a, step) = scratch.parent[s as usize];
+                    steps.push((a, step));
+                    s = p;
+                }
+                Ok((d, steps))
+            }
+        };
+        self.scratch = scratch;
+        result
+    }
+
+    /// The equations among `states` that occur with one sign only: these sum to the contradiction.
+    pub(super) fn obstruction(states: &[u32]) -> Obstruction {
+        let mut sorted = states.to_vec();
+        sorted.sort_unstable();
+        let single: Vec<u32> =
+            sorted.iter().filter(|&&s| sorted.binary_search(&(s ^ 1)).is_err()).map(|&s| s / 2).collect();
+        let mut equations = if single.is_empty() { sorted.iter().map(|s| s / 2).collect() } else { single };
+        equations.dedup();
+        Obstruction { equations }
+    }
+
+    /// The variables that the summed steps would take below their lower bound.
+    pub(super) fn too_low(&self, sum: &[Step]) -> Vec<u32> {
+        sum.iter()
+            .filter(|&&(a, step)| {
+                step < 0 && self.values[a as usize] + step < self.variables[a as usize].lower
+            })
+            .map(|s| s.0)
+            .collect()
+    }
+
+    /// Makes every equation hold by walks from an imbalance to an opposite one or to the ground.
+    pub(super) fn balance(&mut self) -> Result<(), Obstruction> {
+        for e in 0..self.equations {
+            while self.excess[e] != 0 {
+                let start = 2 * e as u32 + (self.excess[e] < 0) as u32;
+                let goal = |flow: &Self, s: u32| {
+                    if s == flow.ground() {
+                        return true;
+                    }
+                    let unit = if s % 2 == 0 { 1 } else { -1 };
+                    let other = (s / 2) as usize;
+                    // The walk's own start has already lost one unit.
+                    flow.excess[other] * unit < 0 && (other != e || flow.excess[e].abs() >= 2)
+                };
+                let mut banned = Vec::new();
+                loop {
+                    match self.search(start, goal, &banned) {
+                        Err(states) => return Err(Self::obstruction(&states)),
+                        Ok((_, steps)) => {
+                            let sum = Self::summed(&steps);
+                            let low = self.too_low(&sum);
+                            if low.is_empty() {
+                                self.apply(&sum);
+                                break;
+                            }
+                            banned.extend(low);
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}

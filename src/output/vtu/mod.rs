@@ -1,0 +1,122 @@
+//! VTK XML unstructured grids (`.vtu`), one `VTK_LAGRANGE_QUADRILATERAL` an element.
+//!
+//! Nodes are equispaced in VTK, so the mesh's Gauss-Lobatto nodes are interpolated anew; that
+//! changes the curves by rounding only. A node that elements share is written once:
+//! vertices first, then edges, then insides; so the mesh is conforming by index. Arrays:
+//!
+//! | cell data | type | meaning |
+//! |---|---|---|
+//! | `scaled_jacobian` | Float64 | minimum over the element of det J / (\|x_ξ\| \|x_η\|) |
+//! | `jacobian_ratio` | Float64 | min / max of det J over the element's nodes |
+//! | `block` | Int32 | the region of the layout that the element comes from |
+//! | `boundary` | Int32 × 4 | for each side the boundary's number, −1 inside |
+//!
+//! The field data array `boundary_names` has the boundaries' names by number. Arrays are appended,
+//! zlib-compressed and base64-coded (VTK file format 2.2; see the VTK file formats documentation).
+
+mod appended;
+mod nodes;
+
+pub use nodes::lagrange_index;
+
+use crate::mesh::HighOrderMesh;
+use crate::numerics::NONE;
+use appended::Appended;
+use nodes::SharedNodes;
+use std::fmt::Write;
+
+/// VTK's cell type number of an arbitrary-order Lagrange quadrilateral.
+const VTK_LAGRANGE_QUADRILATERAL: u8 = 70;
+
+/// The file's content.
+pub fn render(mesh: &HighOrderMesh) -> Vec<u8> {
+    let shared = SharedNodes::new(mesh);
+    let cells = mesh.elements.len();
+    let per_cell = (mesh.order + 1) * (mesh.order + 1);
+    let mut data = Appended::default();
+    let mut xml = String::new();
+    xml.push_str(concat!(
+        "<?xml version=\"1.0\"?>\n",
+        "<VTKFile type=\"UnstructuredGrid\" version=\"2.2\" byte_order=\"LittleEndian\" ",
+        "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n",
+        "<UnstructuredGrid>\n"
+    ));
+    boundary_names(&mut xml, &mesh.boundary_names);
+    let _ = writeln!(xml, "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{cells}\">", shared.points.len());
+
+    xml.push_str("<CellData Scalars=\"scaled_jacobian\">\n");
+    let mut array = |xml: &mut String, kind: Kind, name: &str, components: usize, bytes: Vec<u8>| {
+        let offset = data.push(&bytes);
+        let components = match components {
+            1 => String::new(),
+            n => format!(" NumberOfComponents=\"{n}\""),
+        };
+        let _ = writeln!(
+            xml,
+            "<DataArray type=\"{}\" Name=\"{name}\"{components} format=\"appended\" offset=\"{offset}\"/>",
+            kind.name()
+        );
+    };
+    array(&mut xml, Kind::F64, "scaled_jacobian", 1, doubles(mesh.scaled_jacobian.iter().copied()));
+    array(&mut xml, Kind::F64, "jacobian_ratio", 1, doubles(nodes::jacobian_ratios(mesh).into_iter()));
+    array(&mut xml, Kind::I32, "block", 1, integers(mesh.blocks.iter().copied()));
+    let sides = mesh.element_edges.iter().flatten().map(|&e| mesh.edges[e as usize].boundary);
+    array(&mut xml, Kind::I32, "boundary", 4, integers(sides));
+    xml.push_str("</CellData>\n<Points>\n");
+    let coordinates = shared.points.iter().flat_map(|p| [p.x, p.y, 0.0]);
+    array(&mut xml, Kind::F64, "Points", 3, doubles(coordinates));
+    xml.push_str("</Points>\n<Cells>\n");
+    array(&mut xml, Kind::I64, "connectivity", 1, longs(shared.cells.iter().map(|&i| i as i64)));
+    array(&mut xml, Kind::I64, "offsets", 1, longs((1..=cells).map(|c| (c * per_cell) as i64)));
+    array(&mut xml, Kind::U8, "types", 1, vec![VTK_LAGRANGE_QUADRILATERAL; cells]);
+    xml.push_str("</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"base64\">\n_");
+
+    xml.push_str(data.as_str());
+    xml.push_str("\n</AppendedData>\n</VTKFile>\n");
+    xml.into_bytes()
+}
+
+/// Element types of arrays, by VTK's names.
+#[derive(Clone, Copy)]
+enum Kind {
+    F64,
+    I32,
+    I64,
+    U8,
+}
+
+impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Kind::F64 => "Float64",
+            Kind::I32 => "Int32",
+            Kind::I64 => "Int64",
+            Kind::U8 => "UInt8",
+        }
+    }
+}
+
+/// VTK string arrays in XML are character codes, each string ended by a 0.
+fn boundary_names(xml: &mut String, names: &[String]) {
+    let codes: Vec<String> =
+        names.iter().flat_map(|n| n.bytes().filter(|&b| b != 0).chain([0])).map(|b| b.to_string()).collect();
+    let _ = writeln!(
+        xml,
+        "<FieldData>\n<Array type=\"String\" Name=\"boundary_names\" NumberOfTuples=\"{}\" format=\"ascii\">\n{}\n</Array>\n</FieldData>",
+        names.len(),
+        codes.join(" ")
+    );
+}
+
+fn doubles(values: impl Iterator<Item = f64>) -> Vec<u8> {
+    values.flat_map(f64::to_le_bytes).collect()
+}
+
+fn longs(values: impl Iterator<Item = i64>) -> Vec<u8> {
+    values.flat_map(i64::to_le_bytes).collect()
+}
+
+/// Indices as signed numbers, "none" as −1.
+fn integers(values: impl Iterator<Item = u32>) -> Vec<u8> {
+    values.flat_map(|v| (if v == NONE { -1 } else { v as i32 }).to_le_bytes()).collect()
+}

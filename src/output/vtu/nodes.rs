@@ -1,0 +1,116 @@
+//! The mesh's nodes as VTK wants them: equispaced, each written once.
+
+use crate::mesh::HighOrderMesh;
+use crate::numerics::interpolation::{equispaced, Interpolation};
+use crate::numerics::{cross, Point, Vector};
+
+/// The place of node (i, j), each in 0..=`order`, in VTK's list of the nodes of a Lagrange
+/// quadrilateral: corners, then edges bottom, right, top, left (all with growing i or j), then the
+/// inside with i fastest.
+pub fn lagrange_index(order: usize, i: usize, j: usize) -> usize {
+    let n = order;
+    let inside = n.saturating_sub(1);
+    match (i == 0 || i == n, j == 0 || j == n) {
+        (true, true) => match (i > 0, j > 0) {
+            (false, false) => 0,
+            (true, false) => 1,
+            (true, true) => 2,
+            (false, true) => 3,
+        },
+        (false, true) => 4 + (i - 1) + if j > 0 { 2 * inside } else { 0 },
+        (true, false) => 4 + (j - 1) + if i > 0 { inside } else { 3 * inside },
+        (false, false) => 4 + 4 * inside + (i - 1) + inside * (j - 1),
+    }
+}
+
+/// Equispaced nodes without duplicates.
+pub struct SharedNodes {
+    /// Vertices, then (N − 1) of each edge from its first vertex to its second, then (N − 1)²
+    /// of each element.
+    pub points: Vec<Point>,
+    /// Indices of each element's (N + 1)² nodes, in VTK's order.
+    pub cells: Vec<usize>,
+}
+
+impl SharedNodes {
+    /// Interpolates and numbers the nodes of `mesh`.
+    pub fn new(mesh: &HighOrderMesh) -> Self {
+        let n = mesh.order;
+        let (row, inside) = (n + 1, n - 1);
+        let interpolation = Interpolation::new(mesh.reference_nodes.clone());
+        let matrix = interpolation.matrix(&equispaced(n));
+        let at_edges = mesh.vertices.len();
+        let at_insides = at_edges + mesh.edges.len() * inside;
+        let mut points = mesh.vertices.clone();
+        points.resize(at_insides, Point::origin());
+        let mut cells = vec![0; mesh.elements.len() * row * row];
+        let mut values = vec![Point::origin(); row * row];
+        for (e, corners) in mesh.elements.iter().enumerate() {
+            let given = &mesh.nodes[e * row * row..(e + 1) * row * row];
+            tensor(&matrix, given, &mut values);
+            let cell = &mut cells[e * row * row..(e + 1) * row * row];
+            for (c, &(i, j)) in [(0, 0), (n, 0), (n, n), (0, n)].iter().enumerate() {
+                cell[lagrange_index(n, i, j)] = corners[c] as usize;
+            }
+            for side in 0..4 {
+                let id = mesh.element_edges[e][side] as usize;
+                let edge = &mesh.edges[id];
+                let forward = edge.vertices[0] == corners[side];
+                for k in 1..n {
+                    // Position k along the edge is `along` when walking round the element.
+                    let along = if forward { k } else { n - k };
+                    let (i, j) = [(along, 0), (n, along), (n - along, n), (0, n - along)][side];
+                    let index = at_edges + id * inside + k - 1;
+                    cell[lagrange_index(n, i, j)] = index;
+                    if edge.elements[0] == e as u32 {
+                        points[index] = values[j * row + i];
+                    }
+                }
+            }
+            for j in 1..n {
+                for i in 1..n {
+                    cell[lagrange_index(n, i, j)] = points.len();
+                    points.push(values[j * row + i]);
+                }
+            }
+        }
+        SharedNodes { points, cells }
+    }
+}
+
+/// The matrix applied in both directions of a tensor of points.
+fn tensor(matrix: &nalgebra::DMatrix<f64>, given: &[Point], values: &mut [Point]) {
+    let row = matrix.ncols();
+    let mut half = vec![Vector::zeros(); row * row];
+    for j in 0..row {
+        for a in 0..row {
+            half[j * row + a] = (0..row).map(|i| given[j * row + i].coords * matrix[(a, i)]).sum();
+        }
+    }
+    for b in 0..row {
+        for a in 0..row {
+            let sum: Vector = (0..row).map(|j| half[j * row + a] * matrix[(b, j)]).sum();
+            values[b * row + a] = Point::from(sum);
+        }
+    }
+}
+
+/// For each element the least det J at its nodes divided by the largest.
+pub fn jacobian_ratios(mesh: &HighOrderMesh) -> Vec<f64> {
+    let row = mesh.order + 1;
+    let d = Interpolation::new(mesh.reference_nodes.clone()).differentiation();
+    let ratio = |nodes: &[Point]| {
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for j in 0..row {
+            for i in 0..row {
+                let along_i: Vector = (0..row).map(|k| nodes[j * row + k].coords * d[(i, k)]).sum();
+                let along_j: Vector = (0..row).map(|k| nodes[k * row + i].coords * d[(j, k)]).sum();
+                let jacobian = cross(along_i, along_j);
+                least = least.min(jacobian);
+                most = most.max(jacobian);
+            }
+        }
+        least / most
+    };
+    mesh.nodes.chunks_exact(row * row).map(ratio).collect()
+}

@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# Installs what is missing, then checks and tests everything. Needs a Debian-like system with git and
+# network; Rust is taken as it is or installed for the user. Usage: ./test.sh
+set -euo pipefail
+cd "$(dirname "$0")"
+
+step() { printf '\n== %s\n' "$*"; }
+say() { printf '   %s\n' "$*"; }
+started=$SECONDS
+trap 'code=$?; [ $code -eq 0 ] || printf "\n== FAILED after %s s (exit %s)\n" "$((SECONDS - started))" "$code"' EXIT
+
+as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
+
+step "tools"
+missing=()
+command -v cc >/dev/null || missing+=(build-essential)
+if ! command -v cargo >/dev/null && [ ! -x "$HOME/.cargo/bin/cargo" ]; then
+    command -v curl >/dev/null || missing+=(curl ca-certificates)
+fi
+if [ ${#missing[@]} -gt 0 ]; then
+    say "installing with apt: ${missing[*]}"
+    as_root apt-get update -qq
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
+fi
+PATH="$PATH:$HOME/.cargo/bin"
+if ! command -v cargo >/dev/null; then
+    say "installing Rust (stable) with rustup into ~/.cargo"
+    curl --proto '=https' --tlsv1.2 -sSf https://sh.rustup.rs | sh -s -- -y --profile minimal -c rustfmt -c clippy
+fi
+if command -v rustup >/dev/null && ! { cargo fmt --version && cargo clippy --version; } >/dev/null 2>&1; then
+    say "adding rustfmt and clippy"
+    rustup component add rustfmt clippy
+fi
+say "$(rustc --version), $(cc --version | head -n 1)"
+
+step "formatting"
+cargo fmt --all --check
+step "lints"
+cargo clippy --release --all-targets --locked -- -D warnings
+step "library without the command line"
+cargo clippy --release --lib --no-default-features --locked -- -D warnings
+step "documentation"
+RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --locked --lib
+step "tests"
+cargo test --release --locked
+
+step "the commands of the README"
+cargo build --release --locked
+binary="$PWD/target/release/quadrel"
+[ -z "${CARGO_TARGET_DIR:-}" ] || binary="$CARGO_TARGET_DIR/release/quadrel"
+scratch=$(mktemp -d)
+(
+    cd "$scratch"
+    "$binary"
+    for file in gingerbread.vtu gingerbread.svg; do
+        [ -s "$file" ] || { echo "$file was not written"; exit 1; }
+    done
+    printf '%s\n' '<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0H4V3A2 1 0 0 1 0 3Z"/></svg>' > plate.svg
+    "$binary" plate.svg --order 4 --relative 1e-4 -o plate.vtu --stats plate.json --stages stages
+    [ -s plate.vtu ] && [ -s stages/stages.svg ] && grep -q '"status": "ok"' plate.json
+)
+rm -r "$scratch"
+
+step "package"
+cargo package --locked --allow-dirty --no-verify --quiet
+say "ok"
+
+step "all passed in $((SECONDS - started)) s"
