@@ -7,6 +7,8 @@
 // Several arrays run in step in every loop here; zipping them would hide the formulas.
 #![allow(clippy::needless_range_loop)]
 
+use super::pair::Pair;
+
 /// What is summed over the samples of an element (as a mean), from a = X_ξ, b = X_η, d = a × b.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Measure {
@@ -80,9 +82,9 @@ pub(super) struct Target {
 
 /// `base` to the power p − 1 for the p that [`Measure::Shape`] allows.
 #[inline(always)]
-fn power_less_one<const P: u32>(f: f64) -> f64 {
+fn power_less_one<const P: u32>(f: Pair) -> Pair {
     match P {
-        1 => 1.0,
+        1 => Pair::splat(1.0),
         2 => f,
         4 => f * f * f,
         _ => {
@@ -92,10 +94,10 @@ fn power_less_one<const P: u32>(f: f64) -> f64 {
     }
 }
 
-/// Energy of an element (mean over the K × K samples at parameters `t`), its gradient in
+/// Energy of an element (mean over the K × K samples, computed in H = ⌈K/2⌉ pairs, at parameters `t`), its gradient in
 /// `gradient`, and the least d/A. `None` if the measure is a shape and some d ≤ 0.
 #[inline]
-pub(super) fn element<const K: usize>(
+pub(super) fn element<const K: usize, const H: usize>(
     measure: Measure,
     t: &[f64; K],
     sides: &Sides<K>,
@@ -103,11 +105,11 @@ pub(super) fn element<const K: usize>(
     gradient: &mut Sides<K>,
 ) -> Option<(f64, f64)> {
     match measure {
-        Measure::Shape(1) => run::<K, 1>(0.0, t, sides, target, gradient),
-        Measure::Shape(2) => run::<K, 2>(0.0, t, sides, target, gradient),
-        Measure::Shape(4) => run::<K, 4>(0.0, t, sides, target, gradient),
-        Measure::Shape(_) => run::<K, 8>(0.0, t, sides, target, gradient),
-        Measure::Regularised { epsilon } => run::<K, 0>(epsilon, t, sides, target, gradient),
+        Measure::Shape(1) => run::<K, H, 1>(0.0, t, sides, target, gradient),
+        Measure::Shape(2) => run::<K, H, 2>(0.0, t, sides, target, gradient),
+        Measure::Shape(4) => run::<K, H, 4>(0.0, t, sides, target, gradient),
+        Measure::Shape(_) => run::<K, H, 8>(0.0, t, sides, target, gradient),
+        Measure::Regularised { epsilon } => run::<K, H, 0>(epsilon, t, sides, target, gradient),
     }
 }
 
@@ -153,9 +155,18 @@ pub(super) fn jacobians<const K: usize>(t: &[f64; K], sides: &Sides<K>) -> (f64,
     (least, most)
 }
 
+/// Samples in pairs; an odd last one is repeated (and has no weight).
+fn pairs<const K: usize, const H: usize>(values: &[f64; K]) -> [Pair; H] {
+    let mut out = [Pair::splat(0.0); H];
+    for h in 0..H {
+        out[h] = Pair([values[2 * h], values[(2 * h + 1).min(K - 1)]]);
+    }
+    out
+}
+
 /// P = 0: the regularised measure.
 #[inline]
-fn run<const K: usize, const P: u32>(
+fn run<const K: usize, const H: usize, const P: u32>(
     epsilon: f64,
     t: &[f64; K],
     sides: &Sides<K>,
@@ -163,106 +174,115 @@ fn run<const K: usize, const P: u32>(
     out: &mut Sides<K>,
 ) -> Option<(f64, f64)> {
     let c = &sides.c;
-    let (e, w) = differences(sides);
-    let (r, ri) = (target.ratio, 1.0 / target.ratio);
-    let (area, area_i) = (target.area, 1.0 / target.area);
-    let (angle, even) = (1.0 - target.evenness, 0.5 * target.evenness);
-    let shift = (epsilon * area) * (epsilon * area);
-    let shift_i = 1.0 / shift;
-    let weight = 1.0 / (K * K) as f64;
-    let (mut energy, mut least) = ([0.0; K], [f64::INFINITY; K]);
-    let mut g = [[[0.0; K]; 2]; 4]; // gradient with respect to e
-    let mut gw = [[0.0; K]; 2]; // to w: c₂ − c₀ along ξ
+    let (slopes, across) = differences(sides);
+    let [e0x, e0y] = [pairs::<K, H>(&slopes[0][0]), pairs(&slopes[0][1])];
+    let [e2x, e2y] = [pairs::<K, H>(&slopes[2][0]), pairs(&slopes[2][1])];
+    let [wx, wy] = [pairs::<K, H>(&across[0]), pairs(&across[1])];
+    let ts = pairs::<K, H>(t);
+    let splat = Pair::splat;
+    let (r, ri) = (splat(target.ratio), splat(1.0 / target.ratio));
+    let (area, area_i) = (splat(target.area), splat(1.0 / target.area));
+    let (angle, even) = (splat(0.5 * (1.0 - target.evenness)), splat(0.5 * target.evenness));
+    let shift = (epsilon * target.area) * (epsilon * target.area);
+    let (shift, shift_i) = (splat(shift), splat(2.0 / shift));
+    let (half, two, size) = (splat(0.5), splat(2.0), splat(0.5 * SIZE_WEIGHT));
+    let (mut energy, mut least) = (splat(0.0), splat(f64::INFINITY));
+    // Gradients: to the slopes of sides 0 and 2, to c₂ − c₀ along ξ; the others are sums over rows.
+    let mut g0 = [[splat(0.0); H]; 2];
+    let mut g2 = [[splat(0.0); H]; 2];
+    let mut gw = [[splat(0.0); H]; 2];
+    let mut g1 = [[0.0; K]; 2];
+    let mut g3 = [[0.0; K]; 2];
     let mut gv = [[0.0; K]; 2]; // to c₁ − c₃ along η
     for j in 0..K {
-        let (tj, uj) = (t[j], 1.0 - t[j]);
-        let (vx, vy) = (c[1][0][j] - c[3][0][j], c[1][1][j] - c[3][1][j]);
-        let (e3x, e3y, e1x, e1y) = (e[3][0][j], e[3][1][j], e[1][0][j], e[1][1][j]);
-        let (sx, sy) = (e1x - e3x, e1y - e3y);
-        // Rows first, sums afterwards: sums would keep the loop from running on vector registers.
-        let (mut gax, mut gay, mut gbx, mut gby) = ([0.0; K], [0.0; K], [0.0; K], [0.0; K]);
-        for i in 0..K {
-            let ax = uj * e[0][0][i] + tj * e[2][0][i] + vx;
-            let ay = uj * e[0][1][i] + tj * e[2][1][i] + vy;
-            let bx = e3x + t[i] * sx + w[0][i];
-            let by = e3y + t[i] * sy + w[1][i];
+        let (tj, uj) = (splat(t[j]), splat(1.0 - t[j]));
+        let (vx, vy) = (splat(c[1][0][j] - c[3][0][j]), splat(c[1][1][j] - c[3][1][j]));
+        let (e3x, e3y) = (splat(slopes[3][0][j]), splat(slopes[3][1][j]));
+        let (sx, sy) = (splat(slopes[1][0][j]) - e3x, splat(slopes[1][1][j]) - e3y);
+        let mut row = [splat(0.0); 6];
+        for h in 0..H {
+            let ax = uj * e0x[h] + tj * e2x[h] + vx;
+            let ay = uj * e0y[h] + tj * e2y[h] + vy;
+            let bx = e3x + ts[h] * sx + wx[h];
+            let by = e3y + ts[h] * sy + wy[h];
             let det = ax * by - ay * bx;
-            least[i] = if det < least[i] { det } else { least[i] };
-            let half = 0.5 * (r * (ax * ax + ay * ay) + ri * (bx * bx + by * by));
+            least = least.min(det);
+            let norms = r * (ax * ax + ay * ay) + ri * (bx * bx + by * by);
             // The gradient is g_a = linear · r a − cross · (d's gradient), likewise for b.
-            let (linear, cross);
+            let (mut linear, mut cross, mut value);
             if P == 0 {
                 // χ = s/2 for d > 0, else (εA)²/(2s), s = √(d² + (εA)²) + |d|: neither cancels.
                 let root = (det * det + shift).sqrt();
                 let s = root + det.abs();
-                let chi_i = if det > 0.0 { 2.0 / s } else { 2.0 * s * shift_i };
-                let f = (half + 0.5 * SIZE_WEIGHT * (det * det * area_i + area)) * chi_i;
-                energy[i] += f;
+                let chi_i = det.choose_positive(two / s, s * shift_i);
+                let f = (half * norms + size * (det * det * area_i + area)) * chi_i;
+                value = f;
                 linear = chi_i;
-                cross = f / root - SIZE_WEIGHT * det * area_i * chi_i;
+                cross = f / root - two * size * det * area_i * chi_i;
             } else {
-                let inverse = 1.0 / det;
-                let shape = angle * half * inverse;
+                let inverse = splat(1.0) / det;
+                let shape = angle * norms * inverse;
                 let (up, down) = (even * det * area_i, even * area * inverse);
                 let f = shape + up + down;
                 let power = power_less_one::<P>(f);
-                energy[i] += f * power;
+                value = f * power;
                 let slope = power * inverse;
-                linear = angle * slope;
+                linear = two * angle * slope;
                 cross = slope * (shape + down - up);
             }
-            gax[i] = linear * r * ax - cross * by;
-            gay[i] = linear * r * ay + cross * bx;
-            gbx[i] = linear * ri * bx + cross * ay;
-            gby[i] = linear * ri * by - cross * ax;
+            if K % 2 == 1 && h == H - 1 {
+                let once = Pair([1.0, 0.0]);
+                (value, linear, cross) = (value * once, linear * once, cross * once);
+            }
+            energy = energy + value;
+            let (lr, li) = (linear * r, linear * ri);
+            let gax = lr * ax - cross * by;
+            let gay = lr * ay + cross * bx;
+            let gbx = li * bx + cross * ay;
+            let gby = li * by - cross * ax;
+            g0[0][h] = g0[0][h] + uj * gax;
+            g0[1][h] = g0[1][h] + uj * gay;
+            g2[0][h] = g2[0][h] + tj * gax;
+            g2[1][h] = g2[1][h] + tj * gay;
+            gw[0][h] = gw[0][h] + gbx;
+            gw[1][h] = gw[1][h] + gby;
+            row[0] = row[0] + gax;
+            row[1] = row[1] + gay;
+            row[2] = row[2] + gbx;
+            row[3] = row[3] + gby;
+            row[4] = row[4] + ts[h] * gbx;
+            row[5] = row[5] + ts[h] * gby;
         }
-        for i in 0..K {
-            g[0][0][i] += uj * gax[i];
-            g[0][1][i] += uj * gay[i];
-            g[2][0][i] += tj * gax[i];
-            g[2][1][i] += tj * gay[i];
-            gw[0][i] += gbx[i];
-            gw[1][i] += gby[i];
-        }
-        let mut row = [0.0; 6];
-        for i in 0..K {
-            row[0] += gax[i];
-            row[1] += gay[i];
-            row[2] += gbx[i];
-            row[3] += gby[i];
-            row[4] += t[i] * gbx[i];
-            row[5] += t[i] * gby[i];
-        }
+        let row = row.map(Pair::sum);
         (gv[0][j], gv[1][j]) = (row[0], row[1]);
-        (g[3][0][j], g[3][1][j]) = (row[2] - row[4], row[3] - row[5]);
-        (g[1][0][j], g[1][1][j]) = (row[4], row[5]);
-        if P != 0 && least.iter().any(|d| *d <= 0.0) {
+        (g3[0][j], g3[1][j]) = (row[2] - row[4], row[3] - row[5]);
+        (g1[0][j], g1[1][j]) = (row[4], row[5]);
+        if P != 0 && least.least() <= 0.0 {
             return None;
         }
     }
-    let energy: f64 = energy.iter().sum();
-    let least = least.iter().copied().fold(f64::INFINITY, f64::min);
+    let weight = 1.0 / (K * K) as f64;
     for axis in 0..2 {
         let mut sum = [0.0; 4];
-        for side in 0..4 {
-            for k in 0..K {
-                let value = g[side][axis][k] * weight;
+        for k in 0..K {
+            let lane = |p: &[Pair; H]| p[k / 2].0[k % 2];
+            let g = [lane(&g0[axis]), g1[axis][k], lane(&g2[axis]), g3[axis][k]];
+            for side in 0..4 {
+                let value = g[side] * weight;
                 out.d[side][axis][k] = value;
                 sum[side] += value;
             }
-        }
-        for k in 0..K {
-            out.c[0][axis][k] = -gw[axis][k] * weight;
-            out.c[2][axis][k] = gw[axis][k] * weight;
+            out.c[0][axis][k] = -lane(&gw[axis]) * weight;
+            out.c[2][axis][k] = lane(&gw[axis]) * weight;
             out.c[1][axis][k] = gv[axis][k] * weight;
             out.c[3][axis][k] = -gv[axis][k] * weight;
         }
-        // e holds minus the straight sides, which hang on the corners.
+        // The slopes had those of the straight sides taken off, which hang on the corners.
         out.c[0][axis][0] += sum[0] + sum[3];
         out.c[0][axis][K - 1] += sum[1] - sum[0];
         out.c[2][axis][K - 1] -= sum[1] + sum[2];
         out.c[2][axis][0] += sum[2] - sum[3];
     }
     let scale = if P == 0 { weight } else { weight / P as f64 };
-    Some((energy * scale, least * area_i))
+    Some((energy.sum() * scale, least.least() / target.area))
 }

@@ -20,6 +20,7 @@ mod kernel;
 mod laplacian;
 mod minimiser;
 mod optimiser;
+mod pair;
 mod problem;
 mod quality;
 mod reference;

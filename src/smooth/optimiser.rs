@@ -23,6 +23,8 @@ pub enum Effort {
 pub struct Outcome {
     /// No sample of the optimised elements is inverted.
     pub valid: bool,
+    /// Least det J at the samples, divided by the element's area: how far an invalid result is from valid.
+    pub least_jacobian: f64,
     /// Least scaled Jacobian of the optimised elements, by sampling.
     pub min_scaled_jacobian: f64,
     /// Largest error of the boundary edges that moved, divided by the tolerance.
@@ -162,10 +164,12 @@ impl<'a> Optimiser<'a> {
             problem.refresh();
         }
         let error_ratio = problem.error_ratio();
+        let least_jacobian = problem.least_jacobian();
         problem.store(mesh);
         let quality = self.quality_of(mesh, active);
         Outcome {
             valid: valid && quality.valid(),
+            least_jacobian,
             min_scaled_jacobian: quality.min_scaled_jacobian,
             error_ratio,
             evaluations,

@@ -11,7 +11,7 @@ use crate::mesh::{BoundaryError, QuadMesh};
 use crate::numerics::{Point, Vector, NONE};
 
 /// Weight of the tolerance's barrier against the shape energy, whose optimum is 1/p an element.
-const TOLERANCE_WEIGHT: f64 = 2e-3;
+const TOLERANCE_WEIGHT: f64 = 2e-2;
 /// Weight of −log of each boundary edge's length: keeps sliding vertices apart.
 const LENGTH_WEIGHT: f64 = 1e-3;
 /// The barrier stands this much before the tolerance.
@@ -107,20 +107,20 @@ pub(super) struct Problem<'a> {
     pub least: f64,
 }
 
-/// Calls a method that is generic in the number of samples.
+/// Calls a method that is generic in the number of samples and of pairs of them.
 macro_rules! for_samples {
     ($problem:expr, $method:ident) => {
         match $problem.reference.samples.len() {
-            3 => $problem.$method::<3>(),
-            4 => $problem.$method::<4>(),
-            5 => $problem.$method::<5>(),
-            6 => $problem.$method::<6>(),
-            7 => $problem.$method::<7>(),
-            8 => $problem.$method::<8>(),
-            9 => $problem.$method::<9>(),
-            10 => $problem.$method::<10>(),
-            11 => $problem.$method::<11>(),
-            _ => $problem.$method::<MAX_SAMPLES>(),
+            3 => $problem.$method::<3, 2>(),
+            4 => $problem.$method::<4, 2>(),
+            5 => $problem.$method::<5, 3>(),
+            6 => $problem.$method::<6, 3>(),
+            7 => $problem.$method::<7, 4>(),
+            8 => $problem.$method::<8, 4>(),
+            9 => $problem.$method::<9, 5>(),
+            10 => $problem.$method::<10, 5>(),
+            11 => $problem.$method::<11, 6>(),
+            _ => $problem.$method::<MAX_SAMPLES, { MAX_SAMPLES / 2 }>(),
         }
     };
 }
@@ -563,7 +563,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Gives uneven elements more weight on evenness.
-    fn weigh_elements<const K: usize>(&mut self) {
+    fn weigh_elements<const K: usize, const H: usize>(&mut self) {
         let mut t = [0.0; K];
         t.copy_from_slice(&self.reference.samples);
         let mut sides = Sides::<K>::ZERO;
@@ -580,7 +580,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    fn evaluate_elements<const K: usize>(&mut self) -> f64 {
+    fn evaluate_elements<const K: usize, const H: usize>(&mut self) -> f64 {
         let mut t = [0.0; K];
         t.copy_from_slice(&self.reference.samples);
         let (mut sides, mut gradient) = (Sides::<K>::ZERO, Sides::<K>::ZERO);
@@ -590,7 +590,7 @@ impl<'a> Problem<'a> {
                 let at = element.edges[side] as usize * 4 * K;
                 sides.read(side, &self.samples[at..at + 4 * K], element.flips[side]);
             }
-            match kernel::element(self.measure, &t, &sides, element.target, &mut gradient) {
+            match kernel::element::<K, H>(self.measure, &t, &sides, element.target, &mut gradient) {
                 None => return f64::INFINITY,
                 Some((energy, jacobian)) => {
                     sum += energy;

@@ -9,6 +9,10 @@ use super::problem::Problem;
 
 /// Least d/A at which a mesh counts as untangled: the shape energy takes over there.
 const UNTANGLED: f64 = 1e-3;
+/// Least d/A below which a round's progress is watched ...
+const FAR: f64 = -0.5;
+/// ... and the share of it by which progress may fall short of what the remaining rounds need.
+const PATIENCE: f64 = 1.3;
 /// Least share by which ε's bound shrinks in a round.
 const LEAST_DECREASE: f64 = 0.1;
 /// Step bound of the minimiser, in natural lengths.
@@ -25,7 +29,8 @@ pub(super) fn untangle(
 ) -> bool {
     let mut least = problem.least_jacobian();
     let mut epsilon = 1.0f64;
-    for _ in 0..rounds {
+    let mut first = least;
+    for round in 0..rounds {
         if least > UNTANGLED {
             break;
         }
@@ -40,6 +45,15 @@ pub(super) fn untangle(
         least = problem.least_jacobian();
         if !(before.is_finite() && minimum.value.is_finite()) {
             break;
+        }
+        // Far from valid and not getting there in time: what a merge inverts for good.
+        if round == 0 {
+            first = least;
+        } else if round >= 2 && least < FAR {
+            let rate = (least - first) / round as f64;
+            if -least > PATIENCE * rate * (rounds - round - 1) as f64 {
+                break;
+            }
         }
         // The paper's rule: ε so small that the barrier χ stands just below the present least d.
         let share = (1.0 - minimum.value / before).max(LEAST_DECREASE);
