@@ -35,8 +35,15 @@ pub(super) fn refine_and_smooth(
     mesh = watch.run(stages, Stage::Refine, |_| refine::meet_tolerance(mesh, boundary, &error, options))?;
     note(stages, &optimiser, &mesh, "subdivide");
     let most = MOST_GROWTH * mesh.quads.len();
-    for _ in 0..ROUNDS {
+    for round in 0..ROUNDS {
         // Step 8: smooth, and untangle if need be.
+        let holds = |mesh: &QuadMesh| {
+            let quality = optimiser.quality(mesh);
+            quality.valid() && quality.error_ratio <= 1.0
+        };
+        if round > 0 && holds(&mesh) {
+            break;
+        }
         watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut mesh, None, Effort::Full)))?;
         note(stages, &optimiser, &mesh, "smooth");
         // Step 9: again where it does not hold yet. Divided edges keep their shape, so what is valid stays so.

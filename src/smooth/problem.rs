@@ -19,7 +19,7 @@ const MARGIN: f64 = 0.98;
 /// Errors closer to a limit than this share are taken as above it.
 const CLOSE: f64 = 0.995;
 /// Room given to an edge whose error is above the tolerance.
-const ROOM: f64 = 1.05;
+const ROOM: f64 = 1.002;
 /// Weight of the barrier on such edges, which are to come back below.
 const RESCUE_WEIGHT: f64 = 0.2;
 /// Weight of an even Jacobian against angles in the shape energy ...
