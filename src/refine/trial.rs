@@ -69,8 +69,7 @@ pub(super) fn settle(
             return Some((change.mesh, active));
         }
         // More work lifts the scaled Jacobian, not the rest; and what is far off will not come back.
-        let hopeless =
-            !outcome.valid || !others || quality.min_scaled_jacobian < 0.5 * limits.scaled_jacobian;
+        hopeless = !outcome.valid || !others || quality.min_scaled_jacobian < 0.5 * limits.scaled_jacobian;
         if hopeless && (rings > 1 || outcome.least_jacobian < HOPELESS) {
             return None;
         }
