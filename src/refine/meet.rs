@@ -1,5 +1,6 @@
 //! Boundary vertices moved along their chains, as little as the tolerance allows.
 
+use super::respace::respace;
 use super::{place_equal_error, split_chords, subdivide};
 use crate::domain::{Boundary, BoundaryPoint, Place};
 use crate::error::{Error, Result};
@@ -32,7 +33,7 @@ fn slide_to_tolerance(mesh: &mut QuadMesh, boundary: &Boundary, error: &Boundary
             s.windows(2).map(|w| error.of_chain(chain, w[0], w[1])).fold(0.0, f64::max)
                 / error.tolerance.value
         };
-        if largest(&now) <= PLACEMENT_MARGIN {
+        if largest(&now) <= PLACEMENT_MARGIN || respace(boundary, error, mesh, id).is_some() {
             continue;
         }
         let wanted = aligned(&place_equal_error(chain, error, k, now[0]).positions, &now, chain.length);

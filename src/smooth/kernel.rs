@@ -135,11 +135,19 @@ fn differences<const K: usize>(sides: &Sides<K>) -> ([[[f64; K]; 2]; 4], [[f64; 
     (e, w)
 }
 
-/// The least and the largest d over the samples.
-pub(super) fn jacobians<const K: usize>(t: &[f64; K], sides: &Sides<K>) -> (f64, f64) {
+/// What the samples of an element say without an energy.
+pub(super) struct Sampled {
+    /// Least and largest d, least d / (|a| |b|).
+    pub least: f64,
+    pub most: f64,
+    pub scaled: f64,
+}
+
+/// Samples an element.
+pub(super) fn jacobians<const K: usize>(t: &[f64; K], sides: &Sides<K>) -> Sampled {
     let c = &sides.c;
     let (e, w) = differences(sides);
-    let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+    let (mut least, mut most, mut scaled) = (f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY);
     for j in 0..K {
         let (tj, uj) = (t[j], 1.0 - t[j]);
         for i in 0..K {
@@ -150,9 +158,11 @@ pub(super) fn jacobians<const K: usize>(t: &[f64; K], sides: &Sides<K>) -> (f64,
             let det = ax * by - ay * bx;
             least = least.min(det);
             most = most.max(det);
+            let norms = ((ax * ax + ay * ay) * (bx * bx + by * by)).sqrt();
+            scaled = scaled.min(det / norms.max(f64::MIN_POSITIVE));
         }
     }
-    (least, most)
+    Sampled { least, most, scaled }
 }
 
 /// Samples in pairs; an odd last one is repeated (and has no weight).

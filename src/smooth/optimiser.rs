@@ -147,23 +147,9 @@ impl<'a> Optimiser<'a> {
             valid = problem.least_jacobian() > 0.0;
         }
         if valid {
-            let rescue = std::iter::repeat_n(&8, RESCUES);
-            for (round, power) in schedule.powers.iter().chain(rescue).enumerate() {
-                if round >= schedule.powers.len() && problem.error_ratio() <= 1.0 {
-                    break;
-                }
-                problem.measure = Measure::Shape(*power);
-                problem.refresh();
-                let mut x = std::mem::take(&mut problem.unknowns);
-                let metric = std::mem::take(&mut problem.metric);
-                let limits = Limits { steps: schedule.steps, progress: schedule.progress };
-                let minimum = lbfgs.minimise(&mut problem, &mut x, &metric, REACH, limits);
-                (problem.unknowns, problem.metric) = (x, metric);
-                evaluations += minimum.evaluations;
-            }
-            problem.refresh();
+            self.improve(&mut problem, &mut lbfgs, &schedule, &mut evaluations);
         }
-        let error_ratio = problem.error_ratio();
+        let error_ratio = problem.error_ratio;
         let least_jacobian = problem.least_jacobian();
         problem.store(mesh);
         let quality = self.quality_of(mesh, active);
@@ -173,6 +159,42 @@ impl<'a> Optimiser<'a> {
             min_scaled_jacobian: quality.min_scaled_jacobian,
             error_ratio,
             evaluations,
+        }
+    }
+
+    /// Raises the power of the shape energy from a valid state. What comes out keeps the tolerance if
+    /// the start or any round did, and has the best scaled Jacobian among those that do.
+    fn improve(
+        &self,
+        problem: &mut Problem,
+        lbfgs: &mut Lbfgs,
+        schedule: &Schedule,
+        evaluations: &mut usize,
+    ) {
+        // Better: closer to the tolerance while above it, then the scaled Jacobian.
+        let rank = |p: &Problem| (p.error_ratio.max(1.0), -p.scaled_jacobian);
+        let mut best = (rank(problem), problem.unknowns.clone());
+        let limits = Limits { steps: schedule.steps, progress: schedule.progress };
+        let rescue = std::iter::repeat_n(&8, RESCUES);
+        for (round, power) in schedule.powers.iter().chain(rescue).enumerate() {
+            if round >= schedule.powers.len() && problem.error_ratio <= 1.0 {
+                break;
+            }
+            problem.measure = Measure::Shape(*power);
+            let mut x = std::mem::take(&mut problem.unknowns);
+            let metric = std::mem::take(&mut problem.metric);
+            *evaluations += lbfgs.minimise(problem, &mut x, &metric, REACH, limits).evaluations;
+            (problem.unknowns, problem.metric) = (x, metric);
+            problem.refresh();
+            let now = rank(problem);
+            if now < best.0 {
+                best.0 = now;
+                best.1.clone_from(&problem.unknowns);
+            }
+        }
+        if best.0 < rank(problem) {
+            problem.unknowns = best.1;
+            problem.refresh();
         }
     }
 

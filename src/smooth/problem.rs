@@ -2,7 +2,7 @@
 //! vertices, bubbles of interior edges.
 
 use super::edge_error::{barrier, squared_error};
-use super::kernel::{self, Measure, Sides, Target};
+use super::kernel::{self, Measure, Sampled, Sides, Target};
 use super::minimiser::Objective;
 use super::reference::{Reference, MAX_SAMPLES};
 use super::walk::walk;
@@ -103,6 +103,10 @@ pub(super) struct Problem<'a> {
     /// Squares of natural lengths of the unknowns.
     pub metric: Vec<f64>,
     pub measure: Measure,
+    /// Least scaled Jacobian at the last refresh.
+    pub scaled_jacobian: f64,
+    /// Largest boundary error at the last refresh, divided by the tolerance.
+    pub error_ratio: f64,
     /// Least d/A of the last evaluation.
     pub least: f64,
 }
@@ -192,6 +196,8 @@ impl<'a> Problem<'a> {
             unknowns: Vec::new(),
             metric: Vec::new(),
             measure: Measure::Shape(2),
+            scaled_jacobian: 0.0,
+            error_ratio: 0.0,
             least: 0.0,
         };
         problem.place_unknowns(mesh, &pinned, slide);
@@ -458,6 +464,7 @@ impl<'a> Problem<'a> {
     /// Limits of the boundary errors. The barrier's own error is of the L2 norm and by few points;
     /// its limit is scaled by the present ratio of that to the true one.
     fn refresh_limits(&mut self) {
+        self.error_ratio = 0.0;
         let Some(tolerance) = self.tolerance else { return };
         let (x, n) = (&self.unknowns, self.reference.nodes.len());
         for edge in self.edges.iter_mut().filter(|e| e.moves) {
@@ -470,6 +477,7 @@ impl<'a> Problem<'a> {
                 let chain = &self.boundary.chains[*chain as usize];
                 let now = tolerance.of_chain(chain, start, end);
                 let value = tolerance.tolerance.value;
+                self.error_ratio = self.error_ratio.max(now / value);
                 let wanted = MARGIN * value;
                 (*limit, *weight) = if now < CLOSE * wanted {
                     (wanted, TOLERANCE_WEIGHT)
@@ -484,20 +492,6 @@ impl<'a> Problem<'a> {
                 }
             }
         }
-    }
-
-    /// Largest error of the boundary edges that move, divided by the tolerance.
-    pub fn error_ratio(&self) -> f64 {
-        let Some(tolerance) = self.tolerance else { return 0.0 };
-        let mut most = 0.0f64;
-        for edge in self.edges.iter().filter(|e| e.moves) {
-            if let Shape::Boundary { chain, unknowns, offsets, .. } = edge.shape {
-                let [start, end] = arc_lengths(&self.unknowns, unknowns, offsets);
-                let now = tolerance.of_chain(&self.boundary.chains[chain as usize], start, end);
-                most = most.max(now / tolerance.tolerance.value);
-            }
-        }
-        most
     }
 
     /// The value at `x`, alone.
@@ -567,12 +561,14 @@ impl<'a> Problem<'a> {
         let mut t = [0.0; K];
         t.copy_from_slice(&self.reference.samples);
         let mut sides = Sides::<K>::ZERO;
+        self.scaled_jacobian = f64::INFINITY;
         for element in &mut self.elements {
             for side in 0..4 {
                 let at = element.edges[side] as usize * 4 * K;
                 sides.read(side, &self.samples[at..at + 4 * K], element.flips[side]);
             }
-            let (least, most) = kernel::jacobians(&t, &sides);
+            let Sampled { least, most, scaled } = kernel::jacobians(&t, &sides);
+            self.scaled_jacobian = self.scaled_jacobian.min(scaled);
             let wanted = EVENNESS * UNEVEN * most / least;
             // Inverted elements have other worries.
             let wanted = if least > 0.0 { wanted } else { EVENNESS };
