@@ -36,6 +36,45 @@ fn main() {
                 x.action, x.elements, x.scaled_jacobian, x.boundary_error
             );
         }
+        if let (Ok(dump), Some(m)) = (std::env::var("DUMP"), &stages.quad_mesh) {
+            let mut out = String::new();
+            let b = stages.boundary.as_ref().unwrap();
+            let o = smooth::Optimiser::new(b, 5, None);
+            let q = o.quality(m);
+            for (i, quad) in m.quads.iter().enumerate() {
+                out += &format!("{}", q.elements[i].jacobian_ratio);
+                for k in 0..4 {
+                    let e = m.quad_edges[i][k] as usize;
+                    let edge = &m.edges[e];
+                    let mut pts = vec![];
+                    for j in 0..=8 {
+                        let t = j as f64 / 8.0;
+                        let p = match edge.span {
+                            Some(s) => b.chains[s.chain as usize].point(s.start + (s.end - s.start) * t),
+                            None => {
+                                let [x, y] = edge.vertices.map(|v| m.vertices[v as usize].point);
+                                let mut p = x + (y - x) * t;
+                                let u = 2.0 * t - 1.0;
+                                let leg = [1.0, u, 1.5 * u * u - 0.5, 2.5 * u * u * u - 1.5 * u];
+                                for (c, l) in edge.bubbles.iter().zip(leg) {
+                                    p += c * (4.0 * t * (1.0 - t) * l);
+                                }
+                                p
+                            }
+                        };
+                        pts.push(p);
+                    }
+                    if edge.vertices[0] != quad[k] {
+                        pts.reverse();
+                    }
+                    for p in pts {
+                        out += &format!(" {} {}", p.x, p.y);
+                    }
+                }
+                out += "\n";
+            }
+            std::fs::write(dump, out).unwrap();
+        }
         match r {
             Ok(m) => println!(
                 "  OK elements {} minsj {:.3}",

@@ -17,7 +17,7 @@ use crate::stages::Stages;
 use watch::Watch;
 
 /// Base meshes tried, each finer than the one before, until blocks and elements come out right.
-const ATTEMPTS: usize = 5;
+const ATTEMPTS: usize = 1;
 
 /// Share of the tolerance that the stages aim at: they measure on the boundary's tables, at their
 /// quadrature points, and the last optimisation may use all of what they allow.

@@ -4,6 +4,7 @@ use crate::base_mesh::Triangulation;
 use crate::cross_field::CrossField;
 use crate::domain::Boundary;
 use crate::layout::{BlockLayout, QuadLayout};
+use crate::mesh::QuadMesh;
 use crate::progress::Stage;
 use crate::separatrices::Separatrix;
 use crate::singularities::{CornerFan, Singularity};
@@ -31,6 +32,8 @@ pub struct Stages {
     pub separatrices: Vec<Separatrix>,
     pub block_layout: Option<BlockLayout>,
     pub quad_layout: Option<QuadLayout>,
+    /// The curved mesh as the rounds of steps 7 to 9 left it.
+    pub quad_mesh: Option<QuadMesh>,
     pub rounds: Vec<Round>,
     /// Seconds spent in each stage, in the order of [`Stage::ALL`].
     pub seconds: [f64; 9],

@@ -114,6 +114,7 @@ fn start(boundary: &Boundary, layout: &QuadLayout) -> Result<QuadMesh> {
 /// Notes what a round left.
 fn note(stages: &mut Stages, optimiser: &Optimiser, mesh: &QuadMesh, action: &'static str) {
     let quality = optimiser.quality(mesh);
+    stages.quad_mesh = Some(mesh.clone());
     stages.rounds.push(Round {
         action,
         elements: mesh.quads.len(),

@@ -1,6 +1,7 @@
 //! The one optimiser: untangles if it must, then raises the power of the shape energy.
 
 use super::kernel::Measure;
+use super::local::untangle_locally;
 use super::minimiser::{Lbfgs, Limits};
 use super::problem::Problem;
 use super::quality::{self, ElementQuality, Quality};
@@ -41,12 +42,12 @@ const RESCUES: usize = 3;
 /// Sweeps of the relaxation that restarts a hopeless mesh.
 const FLATTEN_SWEEPS: usize = 200;
 
-struct Schedule {
+pub(super) struct Schedule {
     powers: &'static [u32],
     steps: usize,
     progress: f64,
-    untangle_rounds: usize,
-    untangle_steps: usize,
+    pub untangle_rounds: usize,
+    pub untangle_steps: usize,
 }
 
 impl Effort {
@@ -119,11 +120,14 @@ impl<'a> Optimiser<'a> {
         let schedule = effort.schedule();
         let mut lbfgs = Lbfgs::default();
         let mut evaluations = 0;
-        let new = |mesh: &QuadMesh, slide| {
-            Problem::new(self.boundary, &self.energy, self.error.as_ref(), mesh, active, slide)
-        };
+        let new = |mesh: &QuadMesh, slide| self.problem(mesh, active, slide);
         let mut problem = new(mesh, true);
         let mut valid = problem.least_jacobian() > 0.0;
+        if !valid && active.is_none() {
+            untangle_locally(self, mesh, &schedule, &mut evaluations);
+            problem = new(mesh, true);
+            valid = problem.least_jacobian() > 0.0;
+        }
         if !valid {
             // First with the boundary fixed: sliding vertices would rather pile up than let go. If
             // both fail, the start was worthless: the same from straight edges and mean positions.
@@ -160,6 +164,11 @@ impl<'a> Optimiser<'a> {
             error_ratio,
             evaluations,
         }
+    }
+
+    /// `mesh` as a function of what may move.
+    pub(super) fn problem(&self, mesh: &QuadMesh, active: Option<&[u32]>, slide: bool) -> Problem<'_> {
+        Problem::new(self.boundary, &self.energy, self.error.as_ref(), mesh, active, slide)
     }
 
     /// Raises the power of the shape energy from a valid state. What comes out keeps the tolerance if
