@@ -17,7 +17,7 @@ use crate::stages::Stages;
 use watch::Watch;
 
 /// Base meshes tried, each finer than the one before, until blocks and elements come out right.
-const ATTEMPTS: usize = 1;
+const ATTEMPTS: usize = 4;
 
 /// Share of the tolerance that the stages aim at: they measure on the boundary's tables, at their
 /// quadrature points, and the last optimisation may use all of what they allow.
@@ -55,7 +55,8 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
 
     let mut failure = None;
     let mut request = blocks::first_request(options, &boundary);
-    for _ in 0..ATTEMPTS {
+    for attempt in 0..ATTEMPTS {
+        watch.attempt = attempt;
         match steps_1_to_9(domain, &boundary, options, &tolerance, &mut request, &mut watch, stages) {
             Ok(mesh) => return Ok(mesh),
             Err(error @ (Error::Cancelled | Error::Callback { .. })) => return Err(error),
@@ -63,6 +64,9 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
                 let error = error.map_place(|p| boundary.frame.to_caller(p));
                 failure.get_or_insert(error);
             }
+        }
+        if watch.work > rounds::MOST_WORK {
+            break;
         }
         blocks::refine(&mut request, &boundary);
     }
@@ -85,10 +89,10 @@ fn steps_1_to_9(
     let aim = &BoundaryTolerance { value: TOLERANCE_AIM * tolerance.value, ..*tolerance };
 
     // Steps 4 to 6: separatrices, quad-dominant regions, repair.
-    let layout = blocks::layout(boundary, options, aim, &field, watch, stages)?;
+    let (layout, sizes) = blocks::layout(boundary, options, aim, &field, watch, stages)?;
 
     // Steps 7 to 9: subdivide and smooth until every boundary edge meets the tolerance.
-    let mesh = rounds::refine_and_smooth(boundary, options, aim, &layout, watch, stages)?;
+    let mesh = rounds::refine_and_smooth(boundary, options, aim, &layout, &sizes, watch, stages)?;
 
     // The proof: curved elements of order N with positive Jacobians, on the exact curves.
     watch.run(stages, Stage::Mesh, |_| HighOrderMesh::new(&mesh, boundary, domain, tolerance))

@@ -75,7 +75,7 @@ pub(super) fn field(
     }
 }
 
-/// Separatrices, the T-mesh of regions, and its repair to conforming blocks.
+/// Separatrices, the T-mesh of regions, and its repair to conforming blocks; with the wanted sizes.
 pub(super) fn layout(
     boundary: &Boundary,
     options: &Options,
@@ -83,7 +83,7 @@ pub(super) fn layout(
     field: &Field,
     watch: &mut Watch,
     stages: &mut Stages,
-) -> Result<QuadLayout> {
+) -> Result<(QuadLayout, ElementSize)> {
     let Field { mesh, cross, singularities, corners } = field;
     let mut seeds = Vec::new();
     let mut regions = None;
@@ -103,6 +103,8 @@ pub(super) fn layout(
     let regions = regions
         .ok_or_else(|| Error::Layout { reason: "a region between two sharp corners".into(), at: None })?;
     stages.block_layout = Some(regions.clone());
+    let most = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
+    let sizes = ElementSize::new(mesh, boundary, most);
     let conforming = watch.run(stages, Stage::Layout, |_| {
         let error = BoundaryError::new(*tolerance);
         let mut minimum = Vec::with_capacity(boundary.chains.len());
@@ -110,13 +112,11 @@ pub(super) fn layout(
             let least = least_pieces(chain, &error)?;
             minimum.push(if least > 1 { (least as f64 * CHAIN_MARGIN).ceil() as u32 } else { 1 });
         }
-        let most = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
-        let sizes = ElementSize::new(mesh, boundary, most);
         let size = |p| sizes.at(p);
         layout::conform(&regions, boundary, &Targets::new(&size, &minimum))
     })?;
     stages.block_layout = Some(conforming.repaired);
     stages.fallback = stages.fallback.max(conforming.fallback);
     stages.quad_layout = Some(conforming.layout.clone());
-    Ok(conforming.layout)
+    Ok((conforming.layout, sizes))
 }

@@ -30,6 +30,9 @@ const DIAGONAL_IRREGULARITY: isize = 2;
 /// enough by then is taken.
 const MOST_WORK: u64 = 1_500_000;
 
+/// Quads copied in the time of one element evaluation: a change that is only tried out costs a copy.
+const COPIES_PER_EVALUATION: u64 = 8;
+
 /// State of a coarsening.
 struct Coarsening<'a> {
     boundary: &'a Boundary,
@@ -206,9 +209,15 @@ impl Coarsening<'_> {
                 {
                     continue;
                 }
+                if self.work > MOST_WORK {
+                    return Ok(());
+                }
                 if let Some((score, _)) = scores.get(&key) {
                     queue.push((*score, key, chord));
-                } else if let Ok(change) = self.merge_chord(&chord, &spare) {
+                    continue;
+                }
+                self.work += self.mesh.quads.len() as u64 / COPIES_PER_EVALUATION;
+                if let Ok(change) = self.merge_chord(&chord, &spare) {
                     let score = self.score(&change);
                     scores.insert(key, (score, self.time));
                     queue.push((score, key, chord));
@@ -275,6 +284,10 @@ impl Coarsening<'_> {
                     {
                         continue;
                     }
+                    if self.work > MOST_WORK {
+                        return Ok(());
+                    }
+                    self.work += self.mesh.quads.len() as u64 / COPIES_PER_EVALUATION;
                     if let Ok(change) =
                         collapse(self.boundary, &self.mesh, &self.stars, &[(key, false)], &[q], &spare)
                     {

@@ -50,7 +50,25 @@ pub(super) struct Schedule {
     pub untangle_steps: usize,
 }
 
+/// Quads up to which an optimisation may take all its steps; on larger meshes steps are fewer, so that
+/// the work grows no faster than the mesh.
+const FULL_STEPS: usize = 1200;
+/// Fewest steps of a round.
+const LEAST_STEPS: usize = 12;
+
 impl Effort {
+    /// The schedule for so many quads.
+    fn schedule_for(self, quads: usize) -> Schedule {
+        let schedule = self.schedule();
+        let scaled = |steps: usize| (steps * FULL_STEPS / quads.max(FULL_STEPS)).max(LEAST_STEPS.min(steps));
+        Schedule {
+            steps: scaled(schedule.steps),
+            untangle_steps: scaled(schedule.untangle_steps),
+            untangle_rounds: scaled(schedule.untangle_rounds),
+            ..schedule
+        }
+    }
+
     fn schedule(self) -> Schedule {
         match self {
             Effort::Quick => Schedule {
@@ -117,7 +135,7 @@ impl<'a> Optimiser<'a> {
     /// a quad outside shares them. Once all samples are positive they stay so. If nothing valid is
     /// found the mesh is left at the last try.
     pub fn optimise(&self, mesh: &mut QuadMesh, active: Option<&[u32]>, effort: Effort) -> Outcome {
-        let schedule = effort.schedule();
+        let schedule = effort.schedule_for(active.map_or(mesh.quads.len(), <[u32]>::len));
         let mut lbfgs = Lbfgs::default();
         let mut evaluations = 0;
         let new = |mesh: &QuadMesh, slide| self.problem(mesh, active, slide);
