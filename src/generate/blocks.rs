@@ -2,7 +2,7 @@
 
 use super::watch::Watch;
 use crate::base_mesh::{self, ElementSize, Request, Triangulation};
-use crate::cross_field::{self, CrossField};
+use crate::cross_field::{self, CrossField, Tips};
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
 use crate::layout::{self, t_mesh, QuadLayout, Targets};
@@ -52,12 +52,14 @@ pub(super) fn field(
 ) -> Result<Field> {
     let usual = base_mesh::usual_size(boundary);
     let least = LEAST_REFINEMENT * request.size.map_or(usual, |h| h.min(usual));
+    let tips = if watch.attempt == 0 { Tips::Balanced } else { Tips::OneQuad };
     let mut round = 0;
     loop {
         let mesh = watch.run(stages, Stage::BaseMesh, |_| base_mesh::triangulate(boundary, request))?;
         stages.triangulation = Some(mesh.clone());
-        let cross =
-            watch.run(stages, Stage::CrossField, |_| cross_field::solve(&mesh, boundary, options.field))?;
+        let cross = watch.run(stages, Stage::CrossField, |_| {
+            cross_field::solve_with_tips(&mesh, boundary, options.field, tips)
+        })?;
         stages.cross_field = Some(cross.clone());
         let found = singularities::find(&mesh, boundary, &cross);
         let known = found.as_ref().map_or(&[][..], |(singularities, _)| singularities);
