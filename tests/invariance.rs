@@ -22,7 +22,7 @@ struct Map {
     /// In diagonals of the domain, in both directions.
     shift: f64,
     backwards: bool,
-    /// Loops start at another segment; smooth closed segments at another point.
+    /// Loops start at another segment; a single smooth closed segment at another point.
     begun_elsewhere: bool,
     /// Connectivity and coordinates must agree.
     exact: bool,
@@ -136,7 +136,9 @@ fn moved(domain: &Domain, map: Map) -> (Domain, Similarity) {
         if map.begun_elsewhere {
             let half = segments.len() / 2;
             segments.rotate_left(half);
-            let smooth = segments.len() == 1
+            // Beside other loops the seam of a closed curve is the caller's choice, which the base mesh follows.
+            let smooth = domain.loops().len() == 1
+                && segments.len() == 1
                 && segments[0].pieces().len() == 2
                 && l.turn(0).unwrap().abs() < 1e-6;
             start = if smooth { 0.37 } else { 0.0 };
