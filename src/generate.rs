@@ -10,7 +10,7 @@ mod watch;
 
 use crate::domain::{Boundary, Domain};
 use crate::error::{Error, Result};
-use crate::mesh::{BoundaryTolerance, HighOrderMesh};
+use crate::mesh::{BoundaryTolerance, HighOrderMesh, QuadMesh};
 use crate::options::Options;
 use crate::progress::Stage;
 use crate::stages::Stages;
@@ -57,11 +57,18 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
     let mut request = blocks::first_request(options, &boundary);
     for attempt in 0..ATTEMPTS {
         watch.attempt = attempt;
-        match steps_1_to_9(domain, &boundary, options, &tolerance, &mut request, &mut watch, stages) {
+        stages.begin_attempt(attempt);
+        // The stages speak of places in the canonical frame.
+        let elements = steps_1_to_9(&boundary, options, &tolerance, &mut request, &mut watch, stages)
+            .map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)));
+        // The proof: curved elements of order N with positive Jacobians, on the exact curves.
+        let result = elements.and_then(|elements| {
+            watch.run(stages, Stage::Mesh, |_| HighOrderMesh::new(&elements, &boundary, domain, &tolerance))
+        });
+        match result {
             Ok(mesh) => return Ok(mesh),
             Err(error @ (Error::Cancelled | Error::Callback { .. })) => return Err(error),
             Err(error) => {
-                let error = error.map_place(|p| boundary.frame.to_caller(p));
                 failure.get_or_insert(error);
             }
         }
@@ -74,14 +81,13 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
 }
 
 fn steps_1_to_9(
-    domain: &Domain,
     boundary: &Boundary,
     options: &Options,
     tolerance: &BoundaryTolerance,
     request: &mut crate::base_mesh::Request,
     watch: &mut Watch,
     stages: &mut Stages,
-) -> Result<HighOrderMesh> {
+) -> Result<QuadMesh> {
     // Steps 1 to 3: base mesh, cross field, singularities; refined until the index theorem holds.
     let field = blocks::field(boundary, options, request, watch, stages)?;
 
@@ -92,8 +98,5 @@ fn steps_1_to_9(
     let (layout, sizes) = blocks::layout(boundary, options, aim, &field, watch, stages)?;
 
     // Steps 7 to 9: subdivide and smooth until every boundary edge meets the tolerance.
-    let mesh = rounds::refine_and_smooth(boundary, options, aim, &layout, &sizes, watch, stages)?;
-
-    // The proof: curved elements of order N with positive Jacobians, on the exact curves.
-    watch.run(stages, Stage::Mesh, |_| HighOrderMesh::new(&mesh, boundary, domain, tolerance))
+    rounds::refine_and_smooth(boundary, options, aim, &layout, &sizes, watch, stages)
 }

@@ -1,35 +1,21 @@
 //! A mesh, or a few of its quads, as a function of unknowns: interior vertices, arc lengths of boundary
 //! vertices, bubbles of interior edges.
 
-use super::edge_error::{barrier, squared_error};
-use super::kernel::{self, Measure, Sampled, Sides, Target};
+mod gather;
+mod limits;
+mod sampling;
+mod unknowns;
+
+use super::kernel::{self, Measure, Sides, Target};
 use super::minimiser::Objective;
 use super::reference::{Reference, MAX_SAMPLES};
-use super::walk::walk;
 use crate::domain::{Boundary, BoundaryPoint, Place, Span};
 use crate::mesh::{BoundaryError, QuadMesh};
 use crate::numerics::{Point, Vector, NONE};
+use sampling::arc_lengths;
 
-/// Weight of the tolerance's barrier against the shape energy, whose optimum is 1/p an element.
-const TOLERANCE_WEIGHT: f64 = 2e-2;
-/// Weight of −log of each boundary edge's length: keeps sliding vertices apart.
-const LENGTH_WEIGHT: f64 = 1e-3;
-/// The barrier stands this much before the tolerance.
-const MARGIN: f64 = 0.98;
-/// Errors closer to a limit than this share are taken as above it.
-const CLOSE: f64 = 0.995;
-/// Room given to an edge whose error is above the tolerance.
-const ROOM: f64 = 1.002;
-/// Weight of the barrier on such edges, which are to come back below.
-const RESCUE_WEIGHT: f64 = 0.2;
-/// Weight of an even Jacobian against angles in the shape energy ...
+/// Weight of an even Jacobian against angles in the shape energy; uneven elements get more.
 const EVENNESS: f64 = 0.1;
-/// ... which grows where its least value falls below this share of its largest, ...
-const UNEVEN: f64 = 0.15;
-/// ... up to this.
-const MOST_EVENNESS: f64 = 0.5;
-/// Aspect ratios up to this are left alone; beyond, elements are drawn back to it gently.
-const FREE_ASPECT: f64 = 6.0;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Freedom {
@@ -130,236 +116,6 @@ macro_rules! for_samples {
 }
 
 impl<'a> Problem<'a> {
-    /// Quads `active` (all if `None`) of `mesh`: what has a neighbour outside stays fixed; so do
-    /// boundary vertices unless `slide`.
-    pub fn new(
-        boundary: &'a Boundary,
-        reference: &'a Reference,
-        tolerance: Option<&'a BoundaryError>,
-        mesh: &QuadMesh,
-        active: Option<&[u32]>,
-        slide: bool,
-    ) -> Self {
-        let all: Vec<u32>;
-        let active = match active {
-            Some(list) => list,
-            None => {
-                all = (0..mesh.quads.len() as u32).collect();
-                &all
-            }
-        };
-        let mut inside = vec![false; mesh.quads.len()];
-        active.iter().for_each(|q| inside[*q as usize] = true);
-        let is_inside = |q: u32| q == NONE || inside[q as usize];
-        let mut vertex_of = vec![NONE; mesh.vertices.len()];
-        let mut edge_of = vec![NONE; mesh.edges.len()];
-        let (mut vertices, mut edges) = (Vec::new(), Vec::new());
-        let mut pinned = Vec::new();
-        for q in active {
-            for e in mesh.quad_edges[*q as usize] {
-                if edge_of[e as usize] != NONE {
-                    continue;
-                }
-                edge_of[e as usize] = edges.len() as u32;
-                let edge = &mesh.edges[e as usize];
-                let rim = !edge.quads.iter().all(|q| is_inside(*q));
-                let ends = edge.vertices.map(|v| {
-                    if vertex_of[v as usize] == NONE {
-                        vertex_of[v as usize] = vertices.len() as u32;
-                        vertices.push(LocalVertex {
-                            global: v,
-                            freedom: Freedom::Fixed,
-                            point: mesh.vertices[v as usize].point.coords,
-                            tangent: Vector::zeros(),
-                            gradient: Vector::zeros(),
-                        });
-                        pinned.push(false);
-                    }
-                    let v = vertex_of[v as usize];
-                    pinned[v as usize] |= rim;
-                    v
-                });
-                let shape = Shape::Interior { unknown: if rim { NONE } else { 0 } };
-                edges.push(LocalEdge { global: e, vertices: ends, shape, moves: false });
-            }
-        }
-        let mut problem = Problem {
-            boundary,
-            reference,
-            tolerance,
-            vertices,
-            edges,
-            elements: Vec::with_capacity(active.len()),
-            samples: Vec::new(),
-            adjoint: Vec::new(),
-            nodes: Vec::new(),
-            unknowns: Vec::new(),
-            metric: Vec::new(),
-            measure: Measure::Shape(2),
-            scaled_jacobian: 0.0,
-            error_ratio: 0.0,
-            least: 0.0,
-        };
-        problem.place_unknowns(mesh, &pinned, slide);
-        for q in active {
-            let quad = mesh.quads[*q as usize];
-            let global = mesh.quad_edges[*q as usize];
-            let edges = global.map(|e| edge_of[e as usize]);
-            if !edges.iter().any(|e| problem.edges[*e as usize].moves) {
-                continue;
-            }
-            let starts = [quad[0], quad[1], quad[3], quad[0]];
-            let flips = [0, 1, 2, 3].map(|i| mesh.edges[global[i] as usize].vertices[0] != starts[i]);
-            problem.elements.push(LocalElement {
-                edges,
-                flips,
-                target: Target { ratio: 1.0, area: 1.0, evenness: EVENNESS },
-            });
-        }
-        let k4 = 4 * reference.samples.len();
-        problem.samples = vec![0.0; problem.edges.len() * k4];
-        problem.adjoint = problem.samples.clone();
-        let unknowns = std::mem::take(&mut problem.unknowns);
-        problem.sample(&unknowns, true, Some(mesh));
-        problem.unknowns = unknowns;
-        problem.refresh();
-        problem
-    }
-
-    /// Numbers the unknowns and sets their values.
-    fn place_unknowns(&mut self, mesh: &QuadMesh, pinned: &[bool], slide: bool) {
-        for (vertex, pinned) in self.vertices.iter_mut().zip(pinned) {
-            let unknown = self.unknowns.len() as u32;
-            match mesh.vertices[vertex.global as usize].place {
-                _ if *pinned => {}
-                Place::Interior => {
-                    vertex.freedom = Freedom::Free(unknown);
-                    self.unknowns.extend([vertex.point.x, vertex.point.y]);
-                }
-                Place::Boundary(BoundaryPoint { chain, s }) if slide => {
-                    vertex.freedom = Freedom::Slide { unknown, chain };
-                    self.unknowns.push(s);
-                }
-                _ => {}
-            }
-        }
-        let bubbles = self.reference.bubbles;
-        let moving = |v: &LocalVertex| v.freedom != Freedom::Fixed;
-        for edge in &mut self.edges {
-            let own = &mesh.edges[edge.global as usize];
-            let ends = edge.vertices.map(|v| self.vertices[v as usize]);
-            edge.moves = ends.iter().any(moving);
-            if let Some(Span { chain, start, end }) = own.span {
-                let closed = self.boundary.chains[chain as usize].ends.is_none();
-                let mut offsets = [start, end];
-                let mut unknowns = [NONE; 2];
-                for k in 0..2 {
-                    if let Freedom::Slide { unknown, .. } = ends[k].freedom {
-                        unknowns[k] = unknown;
-                        offsets[k] -= self.unknowns[unknown as usize];
-                        if !closed {
-                            offsets[k] = 0.0;
-                        }
-                    }
-                }
-                let nodes = self.nodes.len() as u32;
-                self.nodes.resize(self.nodes.len() + self.reference.nodes.len(), [Vector::zeros(); 2]);
-                let length = end - start;
-                edge.shape = Shape::Boundary {
-                    chain,
-                    unknowns,
-                    offsets,
-                    nodes,
-                    limit: f64::INFINITY,
-                    weight: 0.0,
-                    length,
-                };
-            } else if let Shape::Interior { unknown } = &mut edge.shape {
-                if *unknown != NONE && bubbles > 0 {
-                    edge.moves = true;
-                    *unknown = self.unknowns.len() as u32;
-                    for m in 0..bubbles {
-                        let b = own.bubbles.get(m).copied().unwrap_or_else(Vector::zeros);
-                        self.unknowns.extend([b.x, b.y]);
-                    }
-                } else {
-                    *unknown = NONE;
-                }
-            }
-        }
-    }
-
-    /// Samples all moving edges at the unknowns `x`; with `fixed` also the others, whose bubbles are
-    /// read from `mesh`. `false` if a boundary edge has no length left.
-    fn sample(&mut self, x: &[f64], fixed: bool, mesh: Option<&QuadMesh>) -> bool {
-        let k = self.reference.samples.len();
-        for vertex in &mut self.vertices {
-            match vertex.freedom {
-                Freedom::Fixed => {}
-                Freedom::Free(u) => vertex.point = Vector::new(x[u as usize], x[u as usize + 1]),
-                Freedom::Slide { unknown, chain } => {
-                    let (p, t) = self.boundary.chains[chain as usize].evaluate(x[unknown as usize]);
-                    (vertex.point, vertex.tangent) = (p.coords, t);
-                }
-            }
-        }
-        for (edge, out) in self.edges.iter().zip(self.samples.chunks_exact_mut(4 * k)) {
-            if !(edge.moves || fixed) {
-                continue;
-            }
-            let (cx, rest) = out.split_at_mut(k);
-            let (cy, rest) = rest.split_at_mut(k);
-            let (dx, dy) = rest.split_at_mut(k);
-            match edge.shape {
-                Shape::Interior { unknown } => {
-                    let [a, b] = edge.vertices.map(|v| self.vertices[v as usize].point);
-                    let d = b - a;
-                    for (i, t) in self.reference.samples.iter().enumerate() {
-                        (cx[i], cy[i], dx[i], dy[i]) = (a.x + t * d.x, a.y + t * d.y, d.x, d.y);
-                    }
-                    let own =
-                        mesh.filter(|_| unknown == NONE).map(|m| &m.edges[edge.global as usize].bubbles);
-                    for m in 0..self.reference.bubbles {
-                        let c = match (unknown, own) {
-                            (NONE, None) => continue,
-                            (NONE, Some(list)) => list.get(m).copied().unwrap_or_else(Vector::zeros),
-                            (u, _) => Vector::new(x[u as usize + 2 * m], x[u as usize + 2 * m + 1]),
-                        };
-                        let (v, s) = (&self.reference.bubble[m * k..], &self.reference.bubble_slope[m * k..]);
-                        for i in 0..k {
-                            cx[i] += c.x * v[i];
-                            cy[i] += c.y * v[i];
-                            dx[i] += c.x * s[i];
-                            dy[i] += c.y * s[i];
-                        }
-                    }
-                }
-                Shape::Boundary { chain, unknowns, offsets, nodes, .. } => {
-                    let [start, end] = arc_lengths(x, unknowns, offsets);
-                    if end <= start {
-                        return false;
-                    }
-                    let chain = &self.boundary.chains[chain as usize];
-                    let n = self.reference.nodes.len();
-                    let own = &mut self.nodes[nodes as usize..nodes as usize + n];
-                    walk(chain, start, end - start, &self.reference.nodes, |i, p, t| own[i] = [p, t]);
-                    out.fill(0.0);
-                    for (i, [p, _]) in own.iter().enumerate() {
-                        let v = &self.reference.lagrange[i * k..(i + 1) * k];
-                        let s = &self.reference.lagrange_slope[i * k..(i + 1) * k];
-                        for j in 0..k {
-                            out[j] += p.x * v[j];
-                            out[k + j] += p.y * v[j];
-                            out[2 * k + j] += p.x * s[j];
-                            out[3 * k + j] += p.y * s[j];
-                        }
-                    }
-                }
-            }
-        }
-        true
-    }
-
     /// Forgets the shape: free edges straight, free vertices at the means of their neighbours
     /// (Gauss-Seidel with over-relaxation, at most `sweeps` sweeps).
     pub fn flatten(&mut self, sweeps: usize) {
@@ -379,10 +135,9 @@ impl<'a> Problem<'a> {
         }
         for _ in 0..sweeps {
             let (mut moved, mut size) = (0.0f64, 0.0f64);
-            for v in 0..self.vertices.len() {
+            for (v, near) in neighbours.iter().enumerate() {
                 let Freedom::Free(u) = self.vertices[v].freedom else { continue };
                 let point = |v: &u32| self.vertices[*v as usize].point;
-                let near = &neighbours[v];
                 let mean = near.iter().map(point).sum::<Vector>() / near.len() as f64;
                 let step = (mean - self.vertices[v].point) * OVER;
                 moved = moved.max(step.norm());
@@ -397,101 +152,6 @@ impl<'a> Problem<'a> {
         }
         self.unknowns = x;
         self.refresh();
-    }
-
-    /// Length of each local edge as sampled last.
-    fn lengths(&self) -> Vec<f64> {
-        let k = self.reference.samples.len();
-        let length = |s: &[f64]| (1..k).map(|i| (s[i] - s[i - 1]).hypot(s[k + i] - s[k + i - 1])).sum();
-        self.samples.chunks_exact(4 * k).map(length).collect()
-    }
-
-    /// Takes aspect ratios, natural lengths and error limits from the present state: they stay
-    /// constant during a minimisation.
-    pub fn refresh(&mut self) {
-        let x = std::mem::take(&mut self.unknowns);
-        self.sample(&x, false, None);
-        self.unknowns = x;
-        let lengths = self.lengths();
-        let mut widths = vec![0.0; self.edges.len()]; // Σ 1/width² of the elements beside
-        let mut floor = vec![0.0f64; self.elements.len()];
-        for (element, floor) in self.elements.iter_mut().zip(&mut floor) {
-            let l = element.edges.map(|e| lengths[e as usize]);
-            // Edges without length must not make a target of no size.
-            *floor = 1e-3 * l.iter().fold(0.0, |a: f64, b| a.max(*b)) + f64::MIN_POSITIVE;
-            let (l1, l2) = ((0.5 * (l[0] + l[2])).max(*floor), (0.5 * (l[1] + l[3])).max(*floor));
-            let area = area(element, &self.samples, self.reference.samples.len());
-            // Inverted elements have no area worth keeping.
-            let area = if area > 0.2 * l1 * l2 { area } else { l1 * l2 };
-            element.target = Target { ratio: tame(l2 / l1), area, evenness: EVENNESS };
-            for (i, e) in element.edges.iter().enumerate() {
-                let width = if i % 2 == 0 { l2 } else { l1 };
-                widths[*e as usize] += 1.0 / (width * width);
-            }
-        }
-        // Natural lengths: harmonic means of the squares, so that the shortest neighbour rules.
-        let mut at_vertex = vec![[0.0; 2]; self.vertices.len()];
-        for (e, edge) in self.edges.iter().enumerate() {
-            let inverse = 1.0 / (lengths[e] * lengths[e]).max(f64::MIN_POSITIVE);
-            for v in edge.vertices {
-                let [sum, count] = &mut at_vertex[v as usize];
-                *sum += inverse;
-                *count += 1.0;
-            }
-        }
-        self.metric.clear();
-        self.metric.resize(self.unknowns.len(), 1.0);
-        for (vertex, [sum, count]) in self.vertices.iter().zip(at_vertex) {
-            match vertex.freedom {
-                Freedom::Fixed => {}
-                Freedom::Free(u) => self.metric[u as usize..u as usize + 2].fill(count / sum),
-                Freedom::Slide { unknown, .. } => self.metric[unknown as usize] = count / sum,
-            }
-        }
-        for (e, edge) in self.edges.iter().enumerate() {
-            if let Shape::Interior { unknown } = edge.shape {
-                if unknown != NONE {
-                    let own = 1.0 / (lengths[e] * lengths[e]).max(f64::MIN_POSITIVE);
-                    let u = unknown as usize;
-                    self.metric[u..u + 2 * self.reference.bubbles].fill(0.5 / (own + widths[e]));
-                }
-            }
-        }
-        self.refresh_evenness();
-        self.refresh_limits();
-    }
-
-    /// Limits of the boundary errors. The barrier's own error is of the L2 norm and by few points;
-    /// its limit is scaled by the present ratio of that to the true one.
-    fn refresh_limits(&mut self) {
-        self.error_ratio = 0.0;
-        let Some(tolerance) = self.tolerance else { return };
-        let (x, n) = (&self.unknowns, self.reference.nodes.len());
-        for edge in self.edges.iter_mut().filter(|e| e.moves) {
-            if let Shape::Boundary { chain, unknowns, offsets, nodes, limit, weight, length } =
-                &mut edge.shape
-            {
-                let [start, end] = arc_lengths(x, *unknowns, *offsets);
-                *length = end - start;
-                let own = &self.nodes[*nodes as usize..*nodes as usize + n];
-                let chain = &self.boundary.chains[*chain as usize];
-                let now = tolerance.of_chain(chain, start, end);
-                let value = tolerance.tolerance.value;
-                self.error_ratio = self.error_ratio.max(now / value);
-                let wanted = MARGIN * value;
-                (*limit, *weight) = if now < CLOSE * wanted {
-                    (wanted, TOLERANCE_WEIGHT)
-                } else if now < CLOSE * value {
-                    (value, RESCUE_WEIGHT)
-                } else {
-                    (ROOM * now, RESCUE_WEIGHT)
-                };
-                if now > 1e-3 * wanted {
-                    let seen = squared_error(self.reference, chain, start, *length, own).value.sqrt();
-                    *limit *= seen / now;
-                }
-            }
-        }
     }
 
     /// The value at `x`, alone.
@@ -556,26 +216,6 @@ impl<'a> Problem<'a> {
         for_samples!(self, weigh_elements)
     }
 
-    /// Gives uneven elements more weight on evenness.
-    fn weigh_elements<const K: usize, const H: usize>(&mut self) {
-        let mut t = [0.0; K];
-        t.copy_from_slice(&self.reference.samples);
-        let mut sides = Sides::<K>::ZERO;
-        self.scaled_jacobian = f64::INFINITY;
-        for element in &mut self.elements {
-            for side in 0..4 {
-                let at = element.edges[side] as usize * 4 * K;
-                sides.read(side, &self.samples[at..at + 4 * K], element.flips[side]);
-            }
-            let Sampled { least, most, scaled } = kernel::jacobians(&t, &sides);
-            self.scaled_jacobian = self.scaled_jacobian.min(scaled);
-            let wanted = EVENNESS * UNEVEN * most / least;
-            // Inverted elements have other worries.
-            let wanted = if least > 0.0 { wanted } else { EVENNESS };
-            element.target.evenness = wanted.clamp(EVENNESS, MOST_EVENNESS);
-        }
-    }
-
     fn evaluate_elements<const K: usize, const H: usize>(&mut self) -> f64 {
         let mut t = [0.0; K];
         t.copy_from_slice(&self.reference.samples);
@@ -600,121 +240,6 @@ impl<'a> Problem<'a> {
         }
         self.least = least;
         sum
-    }
-
-    /// Brings the adjoint of the edges' samples back to the unknowns, and adds the boundary's terms.
-    fn gather(&mut self, x: &[f64], gradient: &mut [f64]) -> f64 {
-        let k = self.reference.samples.len();
-        let n = self.reference.nodes.len();
-        let mut extra = 0.0;
-        gradient.fill(0.0);
-        self.vertices.iter_mut().for_each(|v| v.gradient = Vector::zeros());
-        for (edge, g) in self.edges.iter().zip(self.adjoint.chunks_exact(4 * k)) {
-            if !edge.moves {
-                continue;
-            }
-            match edge.shape {
-                Shape::Interior { unknown } => {
-                    let (mut at_a, mut at_b) = (Vector::zeros(), Vector::zeros());
-                    for (i, t) in self.reference.samples.iter().enumerate() {
-                        let (c, d) = (Vector::new(g[i], g[k + i]), Vector::new(g[2 * k + i], g[3 * k + i]));
-                        at_a += c * (1.0 - t) - d;
-                        at_b += c * *t + d;
-                    }
-                    self.vertices[edge.vertices[0] as usize].gradient += at_a;
-                    self.vertices[edge.vertices[1] as usize].gradient += at_b;
-                    if unknown == NONE {
-                        continue;
-                    }
-                    for m in 0..self.reference.bubbles {
-                        let (v, s) = (&self.reference.bubble[m * k..], &self.reference.bubble_slope[m * k..]);
-                        for axis in 0..2 {
-                            let (c, d) = (&g[axis * k..], &g[(axis + 2) * k..]);
-                            let sum: f64 = (0..k).map(|i| c[i] * v[i] + d[i] * s[i]).sum();
-                            gradient[unknown as usize + 2 * m + axis] = sum;
-                        }
-                    }
-                }
-                Shape::Boundary { chain, unknowns, offsets, nodes, limit, weight, length } => {
-                    let [start, end] = arc_lengths(x, unknowns, offsets);
-                    let own = &self.nodes[nodes as usize..nodes as usize + n];
-                    let mut ends = [0.0; 2];
-                    for (i, [_, tangent]) in own.iter().enumerate() {
-                        let v = &self.reference.lagrange[i * k..(i + 1) * k];
-                        let s = &self.reference.lagrange_slope[i * k..(i + 1) * k];
-                        let mut at = Vector::zeros();
-                        for j in 0..k {
-                            at.x += g[j] * v[j] + g[2 * k + j] * s[j];
-                            at.y += g[k + j] * v[j] + g[3 * k + j] * s[j];
-                        }
-                        let along = at.dot(tangent);
-                        ends[0] += along * (1.0 - self.reference.nodes[i]);
-                        ends[1] += along * self.reference.nodes[i];
-                    }
-                    let now = end - start;
-                    extra -= LENGTH_WEIGHT * (now / length).ln();
-                    ends[0] += LENGTH_WEIGHT / now;
-                    ends[1] -= LENGTH_WEIGHT / now;
-                    if self.tolerance.is_some() {
-                        let chain = &self.boundary.chains[chain as usize];
-                        let e2 = squared_error(self.reference, chain, start, now, own);
-                        let Some((b, slope)) = barrier(self.reference.order, e2.value, limit) else {
-                            return f64::INFINITY;
-                        };
-                        extra += weight * b;
-                        for i in 0..2 {
-                            ends[i] += weight * slope * e2.slope[i];
-                        }
-                    }
-                    for i in 0..2 {
-                        if unknowns[i] != NONE {
-                            gradient[unknowns[i] as usize] += ends[i];
-                        }
-                    }
-                }
-            }
-        }
-        for vertex in &self.vertices {
-            match vertex.freedom {
-                Freedom::Fixed => {}
-                Freedom::Free(u) => {
-                    gradient[u as usize] += vertex.gradient.x;
-                    gradient[u as usize + 1] += vertex.gradient.y;
-                }
-                Freedom::Slide { unknown, .. } => {
-                    gradient[unknown as usize] += vertex.gradient.dot(&vertex.tangent);
-                }
-            }
-        }
-        extra
-    }
-}
-
-/// Signed area inside an element's sampled sides.
-fn area(element: &LocalElement, samples: &[f64], k: usize) -> f64 {
-    let mut twice = 0.0;
-    for side in 0..4 {
-        let c = &samples[element.edges[side] as usize * 4 * k..];
-        let sum: f64 = (1..k).map(|i| c[i - 1] * c[k + i] - c[i] * c[k + i - 1]).sum();
-        // Sides 2 and 3 run clockwise.
-        twice += if element.flips[side] == (side < 2) { -sum } else { sum };
-    }
-    0.5 * twice
-}
-
-/// Arc lengths of a boundary edge's ends.
-fn arc_lengths(x: &[f64], unknowns: [u32; 2], offsets: [f64; 2]) -> [f64; 2] {
-    [0, 1].map(|i| if unknowns[i] == NONE { offsets[i] } else { offsets[i] + x[unknowns[i] as usize] })
-}
-
-/// The aspect ratio to aim at where the present one is `ratio`.
-fn tame(ratio: f64) -> f64 {
-    if ratio > FREE_ASPECT {
-        FREE_ASPECT * (ratio / FREE_ASPECT).sqrt()
-    } else if ratio < 1.0 / FREE_ASPECT {
-        1.0 / tame(1.0 / ratio)
-    } else {
-        ratio
     }
 }
 

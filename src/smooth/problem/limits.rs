@@ -1,0 +1,164 @@
+//! What stays constant during a minimisation: aspect ratios, natural lengths, error limits.
+
+use super::sampling::arc_lengths;
+use super::{Freedom, LocalElement, Problem, Shape, EVENNESS};
+use crate::numerics::NONE;
+use crate::smooth::edge_error::squared_error;
+use crate::smooth::kernel::{self, Sampled, Sides, Target};
+
+/// The barrier stands this much before the tolerance.
+const MARGIN: f64 = 0.98;
+/// Errors closer to a limit than this share are taken as above it.
+const CLOSE: f64 = 0.995;
+/// Room given to an edge whose error is above the tolerance.
+const ROOM: f64 = 1.002;
+/// Weight of the barrier on such edges, which are to come back below.
+const RESCUE_WEIGHT: f64 = 0.2;
+/// Weight of the tolerance's barrier against the shape energy, whose optimum is 1/p an element.
+const TOLERANCE_WEIGHT: f64 = 2e-2;
+/// The weight of evenness grows where an element's Jacobian is uneven: its least value falls below this share of its largest, ...
+const UNEVEN: f64 = 0.15;
+/// ... up to this.
+const MOST_EVENNESS: f64 = 0.5;
+/// Aspect ratios up to this are left alone; beyond, elements are drawn back to it gently.
+const FREE_ASPECT: f64 = 6.0;
+
+impl Problem<'_> {
+    /// Length of each local edge as sampled last.
+    fn lengths(&self) -> Vec<f64> {
+        let k = self.reference.samples.len();
+        let length = |s: &[f64]| (1..k).map(|i| (s[i] - s[i - 1]).hypot(s[k + i] - s[k + i - 1])).sum();
+        self.samples.chunks_exact(4 * k).map(length).collect()
+    }
+
+    /// Takes aspect ratios, natural lengths and error limits from the present state: they stay
+    /// constant during a minimisation.
+    pub fn refresh(&mut self) {
+        let x = std::mem::take(&mut self.unknowns);
+        self.sample(&x, false, None);
+        self.unknowns = x;
+        let lengths = self.lengths();
+        let mut widths = vec![0.0; self.edges.len()]; // Σ 1/width² of the elements beside
+        let mut floor = vec![0.0f64; self.elements.len()];
+        for (element, floor) in self.elements.iter_mut().zip(&mut floor) {
+            let l = element.edges.map(|e| lengths[e as usize]);
+            // Edges without length must not make a target of no size.
+            *floor = 1e-3 * l.iter().fold(0.0, |a: f64, b| a.max(*b)) + f64::MIN_POSITIVE;
+            let (l1, l2) = ((0.5 * (l[0] + l[2])).max(*floor), (0.5 * (l[1] + l[3])).max(*floor));
+            let area = area(element, &self.samples, self.reference.samples.len());
+            // Inverted elements have no area worth keeping.
+            let area = if area > 0.2 * l1 * l2 { area } else { l1 * l2 };
+            element.target = Target { ratio: tame(l2 / l1), area, evenness: EVENNESS };
+            for (i, e) in element.edges.iter().enumerate() {
+                let width = if i % 2 == 0 { l2 } else { l1 };
+                widths[*e as usize] += 1.0 / (width * width);
+            }
+        }
+        // Natural lengths: harmonic means of the squares, so that the shortest neighbour rules.
+        let mut at_vertex = vec![[0.0; 2]; self.vertices.len()];
+        for (e, edge) in self.edges.iter().enumerate() {
+            let inverse = 1.0 / (lengths[e] * lengths[e]).max(f64::MIN_POSITIVE);
+            for v in edge.vertices {
+                let [sum, count] = &mut at_vertex[v as usize];
+                *sum += inverse;
+                *count += 1.0;
+            }
+        }
+        self.metric.clear();
+        self.metric.resize(self.unknowns.len(), 1.0);
+        for (vertex, [sum, count]) in self.vertices.iter().zip(at_vertex) {
+            match vertex.freedom {
+                Freedom::Fixed => {}
+                Freedom::Free(u) => self.metric[u as usize..u as usize + 2].fill(count / sum),
+                Freedom::Slide { unknown, .. } => self.metric[unknown as usize] = count / sum,
+            }
+        }
+        for (e, edge) in self.edges.iter().enumerate() {
+            if let Shape::Interior { unknown } = edge.shape {
+                if unknown != NONE {
+                    let own = 1.0 / (lengths[e] * lengths[e]).max(f64::MIN_POSITIVE);
+                    let u = unknown as usize;
+                    self.metric[u..u + 2 * self.reference.bubbles].fill(0.5 / (own + widths[e]));
+                }
+            }
+        }
+        self.refresh_evenness();
+        self.refresh_limits();
+    }
+
+    /// Limits of the boundary errors. The barrier's own error is of the L2 norm and by few points;
+    /// its limit is scaled by the present ratio of that to the true one.
+    fn refresh_limits(&mut self) {
+        self.error_ratio = 0.0;
+        let Some(tolerance) = self.tolerance else { return };
+        let (x, n) = (&self.unknowns, self.reference.nodes.len());
+        for edge in self.edges.iter_mut().filter(|e| e.moves) {
+            if let Shape::Boundary { chain, unknowns, offsets, nodes, limit, weight, length } =
+                &mut edge.shape
+            {
+                let [start, end] = arc_lengths(x, *unknowns, *offsets);
+                *length = end - start;
+                let own = &self.nodes[*nodes as usize..*nodes as usize + n];
+                let chain = &self.boundary.chains[*chain as usize];
+                let now = tolerance.of_chain(chain, start, end);
+                let value = tolerance.tolerance.value;
+                self.error_ratio = self.error_ratio.max(now / value);
+                let wanted = MARGIN * value;
+                (*limit, *weight) = if now < CLOSE * wanted {
+                    (wanted, TOLERANCE_WEIGHT)
+                } else if now < CLOSE * value {
+                    (value, RESCUE_WEIGHT)
+                } else {
+                    (ROOM * now, RESCUE_WEIGHT)
+                };
+                if now > 1e-3 * wanted {
+                    let seen = squared_error(self.reference, chain, start, *length, own).value.sqrt();
+                    *limit *= seen / now;
+                }
+            }
+        }
+    }
+
+    /// Gives uneven elements more weight on evenness.
+    pub(super) fn weigh_elements<const K: usize, const H: usize>(&mut self) {
+        let mut t = [0.0; K];
+        t.copy_from_slice(&self.reference.samples);
+        let mut sides = Sides::<K>::ZERO;
+        self.scaled_jacobian = f64::INFINITY;
+        for element in &mut self.elements {
+            for side in 0..4 {
+                let at = element.edges[side] as usize * 4 * K;
+                sides.read(side, &self.samples[at..at + 4 * K], element.flips[side]);
+            }
+            let Sampled { least, most, scaled } = kernel::jacobians(&t, &sides);
+            self.scaled_jacobian = self.scaled_jacobian.min(scaled);
+            let wanted = EVENNESS * UNEVEN * most / least;
+            // Inverted elements have other worries.
+            let wanted = if least > 0.0 { wanted } else { EVENNESS };
+            element.target.evenness = wanted.clamp(EVENNESS, MOST_EVENNESS);
+        }
+    }
+}
+
+/// Signed area inside an element's sampled sides.
+fn area(element: &LocalElement, samples: &[f64], k: usize) -> f64 {
+    let mut twice = 0.0;
+    for side in 0..4 {
+        let c = &samples[element.edges[side] as usize * 4 * k..];
+        let sum: f64 = (1..k).map(|i| c[i - 1] * c[k + i] - c[i] * c[k + i - 1]).sum();
+        // Sides 2 and 3 run clockwise.
+        twice += if element.flips[side] == (side < 2) { -sum } else { sum };
+    }
+    0.5 * twice
+}
+
+/// The aspect ratio to aim at where the present one is `ratio`.
+fn tame(ratio: f64) -> f64 {
+    if ratio > FREE_ASPECT {
+        FREE_ASPECT * (ratio / FREE_ASPECT).sqrt()
+    } else if ratio < 1.0 / FREE_ASPECT {
+        1.0 / tame(1.0 / ratio)
+    } else {
+        ratio
+    }
+}
