@@ -25,7 +25,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // Coarsening re-optimises round every removal.
     ("refine", &["domain", "mesh", "layout", "smooth"]),
     ("input", &["domain"]),
-    ("stages", &["domain", "base_mesh", "cross_field", "singularities", "separatrices", "layout"]),
+    ("stages", &["domain", "base_mesh", "cross_field", "singularities", "separatrices", "layout", "mesh"]),
     ("statistics", &["domain", "mesh", "stages"]),
     ("output", &["domain", "mesh", "stages"]),
 ];

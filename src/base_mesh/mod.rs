@@ -1,10 +1,10 @@
 //! Step 1 of the paper: the triangle base mesh.
 //!
-//! *In:* the [`Boundary`](crate::domain::Boundary) and, after a failed check, places to refine.
+//! *In:* the [`Boundary`] and, after a failed check, places to refine.
 //! *Out:* a [`Triangulation`] whose border is a polygon inscribed in the boundary.
 //!
 //! *Method:* the boundary is cut into chords by bisection until none is too long, turns too
-//! much, or is much longer than its neighbours ([`sampling`]). A constrained Delaunay triangulation
+//! much, or is much longer than its neighbours (`sampling`). A constrained Delaunay triangulation
 //! of the chords tells which cross or run closer to the boundary across than their arcs are high;
 //! these are halved and the triangulation is made anew. Then Delaunay refinement (Ruppert 1995, with
 //! the small-angle rule of Miller, Pav and Walkington 2005) bounds angles and areas; it resolves narrow

@@ -1,6 +1,6 @@
 //! Step 2 of the paper: the cross field.
 //!
-//! *In:* the [`Triangulation`](crate::base_mesh::Triangulation) and the corners.
+//! *In:* the [`Triangulation`] and the corners.
 //! *Out:* a [`CrossField`]: u = (cos 4θ, sin 4θ) at the vertices, and the angle of one arm of the
 //! cross around the border of every triangle, as the tracer needs it.
 //!

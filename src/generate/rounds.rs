@@ -91,9 +91,9 @@ pub(super) fn refine_and_smooth(
     }
     if options.subdivision == Subdivision::EqualError && watch.work <= MOST_WORK {
         let limits = Limits::new(options.quality_floor);
-        mesh = watch.run(stages, Stage::Refine, |_| {
-            refine::coarsen(mesh, boundary, &optimiser, limits, &options.progress)
-        })?;
+        let progress = watch.coarsening();
+        mesh = watch
+            .run(stages, Stage::Refine, |_| refine::coarsen(mesh, boundary, &optimiser, limits, &progress))?;
         note(stages, &optimiser, &mesh, "coarsen");
         // Kept only if nothing that holds is lost.
         let before = optimiser.quality(&mesh);
@@ -107,6 +107,11 @@ pub(super) fn refine_and_smooth(
             mesh = smoother;
             note(stages, &optimiser, &mesh, "smooth");
         }
+    }
+    if mesh.quads.len() > options.max_elements {
+        let reason =
+            format!("{} elements, more than the limit of {}", mesh.quads.len(), options.max_elements);
+        return Err(Error::Layout { reason, at: None });
     }
     Ok(mesh)
 }

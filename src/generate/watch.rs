@@ -4,30 +4,52 @@ use crate::error::Result;
 use crate::options::Options;
 use crate::progress::{Progress, Stage};
 use crate::stages::Stages;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 /// Share of the run that is done when a stage begins; an estimate for progress bars.
-const BEGINS: [f64; 9] = [0.0, 0.02, 0.06, 0.1, 0.12, 0.16, 0.25, 0.5, 0.97];
+const BEGINS: [f64; 9] = [0.0, 0.02, 0.06, 0.1, 0.12, 0.16, 0.25, 0.4, 0.97];
+
+/// The same of the coarsening, from its beginning to its end.
+const COARSENING: [f64; 2] = [0.6, 0.95];
+
+/// Raises `reached` to `share`, if that is more, and returns it.
+fn raise(reached: &Mutex<f64>, share: f64) -> f64 {
+    let mut reached = reached.lock().unwrap_or_else(PoisonError::into_inner);
+    *reached = reached.max(share);
+    *reached
+}
 
 pub(super) struct Watch {
     progress: Progress,
     /// Progress never goes back, also when stages run again.
-    reached: f64,
+    reached: Arc<Mutex<f64>>,
     /// Element evaluations spent on smoothing.
     pub work: usize,
 }
 
 impl Watch {
     pub fn new(options: &Options) -> Self {
-        Watch { progress: options.progress.clone(), reached: 0.0, work: 0 }
+        Watch { progress: options.progress.clone(), reached: Arc::default(), work: 0 }
     }
 
     /// Reports `share` of `stage`, in 0..=1.
-    pub fn report(&mut self, stage: Stage, share: f64) -> Result<()> {
-        let i = stage as usize;
-        let end = BEGINS.get(i + 1).copied().unwrap_or(1.0);
-        self.reached = self.reached.max(BEGINS[i] + (end - BEGINS[i]) * share.clamp(0.0, 1.0));
-        self.progress.report(stage, self.reached)
+    pub fn report(&self, stage: Stage, share: f64) -> Result<()> {
+        let begin = BEGINS[stage as usize];
+        let end = match stage {
+            Stage::Smooth => COARSENING[0],
+            _ => BEGINS.get(stage as usize + 1).copied().unwrap_or(1.0),
+        };
+        self.progress.report(stage, raise(&self.reached, begin + (end - begin) * share.clamp(0.0, 1.0)))
+    }
+
+    /// For coarsening: takes its own shares in 0..=1, and reports them as shares of the run.
+    pub fn coarsening(&self) -> Progress {
+        let (progress, reached) = (self.progress.clone(), Arc::clone(&self.reached));
+        let [begin, end] = COARSENING;
+        Progress::new(move |stage, share| {
+            progress.report(stage, raise(&reached, begin + (end - begin) * share.clamp(0.0, 1.0))).is_ok()
+        })
     }
 
     /// Runs a stage under the clock.

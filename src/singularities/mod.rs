@@ -5,7 +5,7 @@
 //! The index theorem 4χ = Σ (4 − valence) + Σ (2 − quads at the corner) is a hard gate.
 //!
 //! *Method:* a triangle around which the cross turns by a quarter is singular (Kowalski, Ledoux,
-//! Frey 2013). Its separatrices leave where the cross points away from the singular point ([`ports`]).
+//! Frey 2013). Its separatrices leave where the cross points away from the singular point (`ports`).
 //! What the base mesh does not resolve is found by [`gate`], which asks for smaller triangles there.
 
 mod gate;
