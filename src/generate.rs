@@ -55,8 +55,7 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
 
     let mut failure = None;
     let mut request = blocks::first_request(options, &boundary);
-    for attempt in 0..ATTEMPTS {
-        watch.attempt = attempt;
+    for attempt in 1..=ATTEMPTS {
         stages.begin_attempt(attempt);
         // The stages speak of places in the canonical frame.
         let elements = steps_1_to_9(&boundary, options, &tolerance, &mut request, &mut watch, stages)

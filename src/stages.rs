@@ -48,14 +48,14 @@ pub struct Stages {
 }
 
 impl Stages {
-    /// Forgets what the attempts before number `attempt` (from 0) left, except warnings and times.
+    /// Forgets what an attempt before left, except its warnings and times.
     pub(crate) fn begin_attempt(&mut self, attempt: usize) {
         *self = Stages {
             boundary: self.boundary.take(),
             seconds: self.seconds,
             reached: Some(Stage::Domain),
             warnings: std::mem::take(&mut self.warnings),
-            attempts: attempt + 1,
+            attempts: attempt,
             ..Stages::default()
         };
     }

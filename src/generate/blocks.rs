@@ -52,7 +52,7 @@ pub(super) fn field(
 ) -> Result<Field> {
     let usual = base_mesh::usual_size(boundary);
     let least = LEAST_REFINEMENT * request.size.map_or(usual, |h| h.min(usual));
-    let tips = if watch.attempt == 0 { Tips::Balanced } else { Tips::OneQuad };
+    let tips = if stages.attempts <= 1 { Tips::Balanced } else { Tips::OneQuad };
     let mut round = 0;
     loop {
         let mesh = watch.run(stages, Stage::BaseMesh, |_| base_mesh::triangulate(boundary, request))?;

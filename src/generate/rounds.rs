@@ -36,7 +36,7 @@ pub(super) fn refine_and_smooth(
     let optimiser = Optimiser::new(boundary, options.order, Some(*tolerance));
     let mut mesh = start(boundary, layout)?;
     note(stages, &optimiser, &mesh, "layout");
-    if watch.attempt > 0 {
+    if stages.attempts > 1 {
         mesh = watch.run(stages, Stage::Refine, |_| divide_long(mesh, boundary, sizes, options.order))?;
     }
 

@@ -24,15 +24,13 @@ pub(super) struct Watch {
     progress: Progress,
     /// Progress never goes back, also when stages run again.
     reached: Arc<Mutex<f64>>,
-    /// Number of layouts that failed before this one.
-    pub attempt: usize,
     /// Element evaluations spent on smoothing.
     pub work: usize,
 }
 
 impl Watch {
     pub fn new(options: &Options) -> Self {
-        Watch { progress: options.progress.clone(), reached: Arc::default(), attempt: 0, work: 0 }
+        Watch { progress: options.progress.clone(), reached: Arc::default(), work: 0 }
     }
 
     /// Reports `share` of `stage`, in 0..=1.

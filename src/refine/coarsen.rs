@@ -13,6 +13,7 @@ use super::trial::{boundary_edges, compact, on_boundary, settle, Limits};
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
 use crate::mesh::QuadMesh;
+use crate::numerics::tolerances::ORDER_TIE;
 use crate::progress::{Progress, Stage};
 use crate::smooth::{Effort, Optimiser};
 use std::collections::{HashMap, HashSet};
@@ -293,7 +294,7 @@ impl Coarsening<'_> {
                     {
                         if change.irregularity <= DIAGONAL_IRREGULARITY {
                             let quality = self.optimiser.element_quality(&self.mesh, q);
-                            queue.push((change.irregularity, quality.size, key, q));
+                            queue.push((change.irregularity, (quality.size / ORDER_TIE).round(), key, q));
                             continue;
                         }
                     }
