@@ -21,7 +21,8 @@ pub enum Norm {
 pub enum Tolerance {
     /// In the norm's own unit.
     Absolute(f64),
-    /// For the domain scaled to a bounding-box diagonal of 1.
+    /// For the domain scaled to a bounding-box diagonal of 1, in the pose in which that box is least: turning
+    /// the domain changes nothing.
     Relative(f64),
 }
 

@@ -258,7 +258,9 @@ fn letter_in_a_circle() {
     examine("icons/mdi/alpha-d-circle-outline-2.svg", &EVERY);
 }
 
+/// Hundreds of removals, each with an optimisation, one after another: a similarity that rounds the input still
+/// gives up to 8 % more or fewer elements here.
 #[test]
 fn gingerbread_man() {
-    examine("hohq/GingerbreadMan.control", &[0, 2, 5]);
+    examine("hohq/GingerbreadMan.control", &[0, 2, 7]);
 }

@@ -54,7 +54,7 @@ pub(crate) fn canonical(domain: &Domain) -> Result<Canonical> {
         .map(|points| farthest(points, origin, radius))
         .find(|far| !far.is_empty() && (far[0] - origin).norm() > 0.1 * radius)
         .unwrap_or_default();
-    let axis = best_axis(&candidates, &samples, origin, radius);
+    let axis = best_axis(&candidates, &samples, &joints, origin, radius);
     let mut frame = Frame { origin, scale: 1.0, axis };
     frame.scale = Bounds::of(&flat.iter().map(|&p| frame.to_canonical(p)).collect::<Vec<_>>()).diagonal();
     let least_diagonal = least_diagonal(&flat.iter().map(|&p| frame.to_canonical(p)).collect::<Vec<_>>());
@@ -100,27 +100,38 @@ fn farthest(points: &[Point], origin: Point, radius: f64) -> Vec<Point> {
 }
 
 /// Of the candidates the direction from which the boundary's moments are the largest in lexicographic
-/// order, differences below the tie tolerance counting as none.
-fn best_axis(candidates: &[Point], samples: &[Vec<Point>], origin: Point, radius: f64) -> Vector {
+/// order, then those of the joints (a symmetric plate's round holes may all start at the same side);
+/// differences below the tie tolerance count as none.
+fn best_axis(
+    candidates: &[Point],
+    samples: &[Vec<Point>],
+    joints: &[Point],
+    origin: Point,
+    radius: f64,
+) -> Vector {
     let direction = |p: &Point| (p - origin) / (p - origin).norm();
     match candidates {
         [] => return Vector::new(1.0, 0.0),
         [only] => return direction(only),
         _ => {}
     }
-    // ∮ zᵏ ds over the sampled polyline, z = (point − origin) / radius as a complex number.
-    let mut terms: Vec<[Vec<f64>; 2]> = vec![Default::default(); MOMENTS];
-    for line in samples {
-        for w in line.windows(2) {
-            let length = (w[1] - w[0]).norm() / radius;
-            let z = (nalgebra::center(&w[0], &w[1]) - origin) / radius;
-            let mut power = Vector::new(length, 0.0);
-            for term in terms.iter_mut() {
-                power = complex_product(power, z);
-                term[0].push(power.x);
-                term[1].push(power.y);
-            }
+    // ∮ zᵏ ds over the sampled polyline, then Σ zᵏ over the joints, z = (point − origin) / radius as a complex
+    // number.
+    let mut terms: Vec<[Vec<f64>; 2]> = vec![Default::default(); 2 * MOMENTS];
+    let add = |terms: &mut [[Vec<f64>; 2]], z: Vector, weight: f64| {
+        let mut power = Vector::new(weight, 0.0);
+        for term in terms {
+            power = complex_product(power, z);
+            term[0].push(power.x);
+            term[1].push(power.y);
         }
+    };
+    for w in samples.iter().flat_map(|line| line.windows(2)) {
+        let middle = (nalgebra::center(&w[0], &w[1]) - origin) / radius;
+        add(&mut terms[..MOMENTS], middle, (w[1] - w[0]).norm() / radius);
+    }
+    for joint in joints {
+        add(&mut terms[MOMENTS..], (joint - origin) / radius, 1.0);
     }
     let moments: Vec<Vector> = terms
         .into_iter()
@@ -132,8 +143,11 @@ fn best_axis(candidates: &[Point], samples: &[Vec<Point>], origin: Point, radius
     let seen_from = |axis: Vector| -> Vec<f64> {
         let back = Vector::new(axis.x, -axis.y);
         let mut turned = Vector::new(1.0, 0.0);
-        let mut seen = Vec::with_capacity(2 * MOMENTS);
-        for m in &moments {
+        let mut seen = Vec::with_capacity(4 * MOMENTS);
+        for (k, m) in moments.iter().enumerate() {
+            if k == MOMENTS {
+                turned = Vector::new(1.0, 0.0);
+            }
             turned = complex_product(turned, back);
             let v = complex_product(*m, turned);
             seen.extend([v.x, v.y]);
