@@ -12,8 +12,10 @@ trap 'rm -r "$scratch"' EXIT
 cp "$scratch/stages.svg" "$here/stages.svg"
 domains=tests/domains
 for domain in hohq/BlobAdapt.control hohq/EllipseAndFourCircles.control hohq/IceCreamConeCommented.control \
-    glyphs/LatinModernRoman/u0026.svg glyphs/DejaVuSans/u0038.svg; do
+    glyphs/LatinModernRoman/u0026.svg glyphs/DejaVuSans/u0038.svg icons/bootstrap/twitter.svg; do
     name=$(basename "${domain%.*}")
     timeout 600 "$quadrel" "$domains/$domain" --order 5 --relative 1e-4 -o "$here/$name.svg" ||
         echo "no picture of $domain"
 done
+"$quadrel" "$domains/icons/bootstrap/twitter.svg" --order 5 --relative 1e-4 --stages "$scratch"
+cp "$scratch/5-regions.svg" "$here/twitter-regions.svg"
