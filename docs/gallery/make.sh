@@ -19,3 +19,7 @@ for domain in hohq/BlobAdapt.control hohq/EllipseAndFourCircles.control hohq/Ice
 done
 "$quadrel" "$domains/icons/bootstrap/twitter.svg" --order 5 --relative 1e-4 --stages "$scratch"
 cp "$scratch/5-regions.svg" "$here/twitter-regions.svg"
+for domain in hohq/NACA0012.control glyphs/DejaVuSans/u0038.svg icons/mdi/alpha-b.svg; do
+    "$quadrel" "$domains/$domain" --order 5 --relative 1e-5 --stages "$scratch"
+    cp "$scratch/stages.svg" "$here/stages-$(basename "${domain%.*}").svg"
+done
