@@ -59,12 +59,13 @@ pub struct Options {
     pub field: FieldMethod,
     /// How boundary edges are divided (step 7).
     pub subdivision: Subdivision,
-    /// Largest wanted element size, in the caller's unit; `None`: no limit.
+    /// Largest wanted element size, in the caller's unit; `None`: no limit. The integer
+    /// lengths aim at it, and coarsening makes no element larger than it or than the largest they left.
     pub max_element_size: Option<f64>,
     /// Wanted size of the base triangles, in the caller's unit; `None`: automatic.
     pub base_mesh_size: Option<f64>,
-    /// Scaled Jacobian below which coarsening never goes, in (0, 1), as a share of the domain's
-    /// ceiling.
+    /// Scaled Jacobian, in (0, 1), that coarsening does not take elements below; where the mesh is below it
+    /// already, coarsening does not make it worse.
     pub quality_floor: f64,
     /// Most elements allowed.
     pub max_elements: usize,

@@ -90,7 +90,8 @@ pub(super) fn refine_and_smooth(
         return Err(Error::InvalidElement { jacobian: quality.min_scaled_jacobian, at });
     }
     if options.subdivision == Subdivision::EqualError && watch.work <= MOST_WORK {
-        let limits = Limits::new(options.quality_floor);
+        let size = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
+        let limits = Limits { size, ..Limits::new(options.quality_floor) };
         let progress = watch.coarsening();
         mesh = watch
             .run(stages, Stage::Refine, |_| refine::coarsen(mesh, boundary, &optimiser, limits, &progress))?;
@@ -116,8 +117,8 @@ pub(super) fn refine_and_smooth(
     Ok(mesh)
 }
 
-/// For a second attempt: where the integer lengths left edges that are many times the wanted size, their chords are divided: an
-/// element from a small part straight to the far field could not be untangled.
+/// For later attempts: where the integer lengths left edges of many times the wanted size, divides their
+/// chords. An element from a small part straight to the far field could not be untangled.
 fn divide_long(
     mut mesh: QuadMesh,
     boundary: &Boundary,

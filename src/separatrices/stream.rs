@@ -93,6 +93,10 @@ impl Piece {
 /// outflow, relative to that part of the edge: only keeps rounding from hitting a vertex.
 const INSET: f64 = 1e-13;
 
+/// Outflow beside the entry, relative to the triangle's, that is rounding of the change between inflow and
+/// outflow and no exit: angles carry 1e-15, lifts and shares some powers of ten more.
+const SLIVER: f64 = 1e-9;
+
 /// A branch of the cross: the lifted angle plus `branch` quarter turns.
 pub(crate) type Branch = i32;
 
@@ -363,7 +367,7 @@ fn first_return(all: &[Piece], walk: &[Piece], from: Position, ccw: bool) -> Opt
             entered = true;
         } else if f > 0.0 {
             // Rounding may put the entry a hair beyond the change to outflow: that sliver is no exit.
-            if !entered && p.edge == from.edge && level <= 0.0 && walk.len() > 1 && f < 1e-9 * outflow {
+            if !entered && p.edge == from.edge && level <= 0.0 && walk.len() > 1 && f < SLIVER * outflow {
                 continue;
             }
             if level - f * scale <= 0.0 {

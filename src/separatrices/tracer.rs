@@ -441,7 +441,7 @@ impl<'a> Tracer<'a> {
         let (d, e) = (q - p, b - a);
         let denominator = cross(d, e);
         let x = if denominator == 0.0 { 0.5 } else { cross(a - p, e) / denominator };
-        p + d * if x.is_finite() { x.clamp(0.02, 0.98) } else { 0.5 }
+        p + d * if x.is_finite() { x.clamp(CHORD_INSET, 1.0 - CHORD_INSET) } else { 0.5 }
     }
 
     /// The loops of the boundary that no chain of traces connects with loop 0.
@@ -520,6 +520,10 @@ impl<'a> Tracer<'a> {
             .collect()
     }
 }
+
+/// Least share of a chord between its ends and a T-junction drawn on it: beside a singular point straight
+/// chords may miss each other. Positions for pictures and lengths only; the order is kept apart.
+const CHORD_INSET: f64 = 0.02;
 
 /// How far from a tip it is cut off, relative to the shorter of its sides.
 const TIP_SIDE_SHARE: f64 = 0.3;
