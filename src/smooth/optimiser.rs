@@ -41,10 +41,22 @@ const RESCUES: usize = 3;
 /// Sweeps of the relaxation that restarts a hopeless mesh.
 const FLATTEN_SWEEPS: usize = 200;
 
+/// What is done to an inverted mesh before it is untangled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Prepare {
+    Nothing,
+    /// Straight edges, vertices at the means of their neighbours.
+    Flatten,
+    /// The same with boundary vertices spread along their chains.
+    Spread,
+}
+
 struct Schedule {
     powers: &'static [u32],
     steps: usize,
     progress: f64,
+    /// Ways to untangle, in turn until one works; `true`: boundary vertices slide.
+    ways: &'static [(Prepare, bool)],
     untangle_rounds: usize,
     untangle_steps: usize,
 }
@@ -56,6 +68,7 @@ impl Effort {
                 powers: &[2, 8],
                 steps: 20,
                 progress: 1e-2,
+                ways: &[(Prepare::Nothing, true)],
                 untangle_rounds: 6,
                 untangle_steps: 25,
             },
@@ -63,10 +76,33 @@ impl Effort {
                 powers: &[2, 4, 8, 8],
                 steps: 60,
                 progress: 1e-4,
+                // First with the boundary fixed: sliding vertices would rather pile up than let go.
+                ways: &[
+                    (Prepare::Nothing, false),
+                    (Prepare::Nothing, true),
+                    (Prepare::Flatten, false),
+                    (Prepare::Nothing, true),
+                    (Prepare::Spread, false),
+                    (Prepare::Nothing, true),
+                ],
                 untangle_rounds: 20,
                 untangle_steps: 50,
             },
         }
+    }
+}
+
+/// Where an optimisation arrived, as its own samples see it.
+#[derive(Debug, Clone, Copy)]
+struct State {
+    valid: bool,
+    least_jacobian: f64,
+    error_ratio: f64,
+}
+
+impl State {
+    fn of(problem: &mut Problem, valid: bool) -> Self {
+        State { valid, least_jacobian: problem.least_jacobian(), error_ratio: problem.error_ratio }
     }
 }
 
@@ -76,6 +112,7 @@ pub struct Optimiser<'a> {
     boundary: &'a Boundary,
     error: Option<BoundaryError>,
     energy: Reference,
+    dense: Reference,
     measuring: Reference,
 }
 
@@ -88,6 +125,7 @@ impl<'a> Optimiser<'a> {
             boundary,
             error: tolerance.map(BoundaryError::new),
             energy: Reference::for_energy(order),
+            dense: Reference::for_dense_energy(order),
             measuring: Reference::for_quality(order),
         }
     }
@@ -116,50 +154,87 @@ impl<'a> Optimiser<'a> {
     /// a quad outside shares them. Once all samples are positive they stay so. If nothing valid is
     /// found the mesh is left at the last try.
     pub fn optimise(&self, mesh: &mut QuadMesh, active: Option<&[u32]>, effort: Effort) -> Outcome {
+        let start = self.problem(&self.energy, mesh, active, true).unknowns;
+        let held = self.quality_of(mesh, active).valid();
+        let mut evaluations = 0;
+        let mut state = self.run(&self.energy, mesh, active, effort, &mut evaluations);
+        let mut quality = self.quality_of(mesh, active);
+        if state.valid && !quality.valid() {
+            // Inverted between the samples: denser ones.
+            state = self.run(&self.dense, mesh, active, effort, &mut evaluations);
+            quality = self.quality_of(mesh, active);
+        }
+        if held && !quality.valid() {
+            let mut problem = self.problem(&self.energy, mesh, active, true);
+            problem.unknowns = start;
+            problem.refresh();
+            state = State::of(&mut problem, true);
+            problem.store(mesh);
+            quality = self.quality_of(mesh, active);
+        }
+        Outcome {
+            valid: quality.valid(),
+            least_jacobian: state.least_jacobian,
+            min_scaled_jacobian: quality.min_scaled_jacobian,
+            error_ratio: state.error_ratio,
+            evaluations,
+        }
+    }
+
+    fn problem<'b>(
+        &'b self,
+        reference: &'b Reference,
+        mesh: &QuadMesh,
+        active: Option<&[u32]>,
+        slide: bool,
+    ) -> Problem<'b> {
+        Problem::new(self.boundary, reference, self.error.as_ref(), mesh, active, slide)
+    }
+
+    /// Untangles if need be, then improves.
+    fn run(
+        &self,
+        reference: &Reference,
+        mesh: &mut QuadMesh,
+        active: Option<&[u32]>,
+        effort: Effort,
+        evaluations: &mut usize,
+    ) -> State {
         let schedule = effort.schedule();
         let mut lbfgs = Lbfgs::default();
-        let mut evaluations = 0;
-        let new = |mesh: &QuadMesh, slide| {
-            Problem::new(self.boundary, &self.energy, self.error.as_ref(), mesh, active, slide)
-        };
-        let mut problem = new(mesh, true);
+        let mut problem = self.problem(reference, mesh, active, true);
         let mut valid = problem.least_jacobian() > 0.0;
         if !valid {
-            // First with the boundary fixed: sliding vertices would rather pile up than let go. If
-            // both fail, the start was worthless: the same from straight edges and mean positions.
-            let ways: &[(bool, bool)] = match effort {
-                Effort::Quick => &[(true, false)],
-                Effort::Full => &[(false, false), (true, false), (false, true), (true, false)],
-            };
-            for (slide, flatten) in ways.iter().copied() {
-                problem = new(mesh, slide);
-                if flatten {
-                    problem.flatten(FLATTEN_SWEEPS);
+            for (prepare, slide) in schedule.ways.iter().copied() {
+                // Boundary vertices are only prepared where they can slide.
+                problem = self.problem(reference, mesh, active, slide || prepare == Prepare::Spread);
+                match prepare {
+                    Prepare::Nothing => {}
+                    Prepare::Flatten => problem.flatten(FLATTEN_SWEEPS),
+                    Prepare::Spread => {
+                        problem.spread();
+                        problem.flatten(FLATTEN_SWEEPS);
+                        if !slide {
+                            problem.store(mesh);
+                            problem = self.problem(reference, mesh, active, false);
+                        }
+                    }
                 }
                 let (rounds, steps) = (schedule.untangle_rounds, schedule.untangle_steps);
-                valid = untangle(&mut problem, &mut lbfgs, rounds, steps, &mut evaluations);
+                valid = untangle(&mut problem, &mut lbfgs, rounds, steps, evaluations);
                 problem.store(mesh);
                 if valid {
                     break;
                 }
             }
-            problem = new(mesh, true);
+            problem = self.problem(reference, mesh, active, true);
             valid = problem.least_jacobian() > 0.0;
         }
         if valid {
-            self.improve(&mut problem, &mut lbfgs, &schedule, &mut evaluations);
+            self.improve(&mut problem, &mut lbfgs, &schedule, evaluations);
         }
-        let error_ratio = problem.error_ratio;
-        let least_jacobian = problem.least_jacobian();
         problem.store(mesh);
-        let quality = self.quality_of(mesh, active);
-        Outcome {
-            valid: valid && quality.valid(),
-            least_jacobian,
-            min_scaled_jacobian: quality.min_scaled_jacobian,
-            error_ratio,
-            evaluations,
-        }
+        State::of(&mut problem, valid)
     }
 
     /// Raises the power of the shape energy from a valid state. What comes out keeps the tolerance if

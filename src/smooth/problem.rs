@@ -360,7 +360,7 @@ impl<'a> Problem<'a> {
         true
     }
 
-    /// Forgets the shape: free edges straight, free vertices at the means of their neighbours
+    /// Forgets the shape: free edges become straight, free vertices go to the means of their neighbours
     /// (Gauss-Seidel with over-relaxation, at most `sweeps` sweeps).
     pub fn flatten(&mut self, sweeps: usize) {
         const OVER: f64 = 1.6;
@@ -375,6 +375,11 @@ impl<'a> Problem<'a> {
                 if unknown != NONE {
                     x[unknown as usize..unknown as usize + 2 * self.reference.bubbles].fill(0.0);
                 }
+            }
+        }
+        for vertex in &mut self.vertices {
+            if let Freedom::Slide { unknown, chain } = vertex.freedom {
+                vertex.point = self.boundary.chains[chain as usize].point(x[unknown as usize]).coords;
             }
         }
         for _ in 0..sweeps {
@@ -397,6 +402,28 @@ impl<'a> Problem<'a> {
         }
         self.unknowns = x;
         self.refresh();
+    }
+
+    /// Moves sliding vertices towards the middle between their neighbours on the chain: where a layout
+    /// piled them up, nothing else gets them apart. The tolerance is not looked at.
+    pub fn spread(&mut self) {
+        const PASSES: usize = 30;
+        for _ in 0..PASSES {
+            let mut shift = vec![0.0; self.unknowns.len()];
+            for edge in &self.edges {
+                if let Shape::Boundary { unknowns, offsets, .. } = edge.shape {
+                    let [start, end] = arc_lengths(&self.unknowns, unknowns, offsets);
+                    for (unknown, sign) in unknowns.into_iter().zip([1.0, -1.0]) {
+                        if unknown != NONE {
+                            shift[unknown as usize] += sign * 0.25 * (end - start);
+                        }
+                    }
+                }
+            }
+            for (x, s) in self.unknowns.iter_mut().zip(shift) {
+                *x += s;
+            }
+        }
     }
 
     /// Length of each local edge as sampled last.
