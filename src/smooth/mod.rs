@@ -16,6 +16,7 @@
 //! M. Staten, *An approach to combined Laplacian and optimization-based smoothing*, 1998.
 
 mod edge_error;
+mod evaluation;
 mod kernel;
 mod laplacian;
 mod minimiser;
@@ -24,6 +25,8 @@ mod pair;
 mod problem;
 mod quality;
 mod reference;
+mod restart;
+mod scales;
 mod untangle;
 mod walk;
 

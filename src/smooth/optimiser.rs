@@ -255,7 +255,7 @@ impl<'a> Optimiser<'a> {
             if round >= schedule.powers.len() && problem.error_ratio <= 1.0 {
                 break;
             }
-            problem.measure = Measure::Shape(*power);
+            problem.prepare(Measure::Shape(*power));
             let mut x = std::mem::take(&mut problem.unknowns);
             let metric = std::mem::take(&mut problem.metric);
             *evaluations += lbfgs.minimise(problem, &mut x, &metric, REACH, limits).evaluations;

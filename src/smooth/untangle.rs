@@ -34,7 +34,7 @@ pub(super) fn untangle(
         if least > UNTANGLED {
             break;
         }
-        problem.measure = Measure::Regularised { epsilon };
+        problem.prepare(Measure::Regularised { epsilon });
         let mut x = std::mem::take(&mut problem.unknowns);
         let metric = std::mem::take(&mut problem.metric);
         let before = problem.energy(&x);

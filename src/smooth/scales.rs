@@ -1,0 +1,184 @@
+//! Scales of a [`Problem`]: what elements are measured against, how far unknowns naturally move, where the
+//! barriers stand and what they weigh.
+
+use super::edge_error::squared_error;
+use super::evaluation::for_samples;
+use super::kernel::{self, Measure, Sampled, Sides, Target};
+use super::problem::{arc_lengths, Freedom, LocalElement, Problem, Shape};
+use super::reference::MAX_SAMPLES;
+use crate::numerics::NONE;
+
+/// Weight of the tolerance's barrier against the shape energy, whose optimum is 1/p an element.
+const TOLERANCE_WEIGHT: f64 = 2e-2;
+/// The barrier stands this much before the tolerance.
+const MARGIN: f64 = 0.98;
+/// Errors closer to a limit than this share are taken as above it.
+const CLOSE: f64 = 0.995;
+/// Room given to an edge whose error is above the tolerance.
+const ROOM: f64 = 1.05;
+/// Weight of the barrier on such edges, which are to come back below.
+const RESCUE_WEIGHT: f64 = 0.2;
+/// Weight of an even Jacobian against angles in the shape energy ...
+pub(super) const EVENNESS: f64 = 0.1;
+/// ... which grows where its least value falls below this share of its largest, ...
+const UNEVEN: f64 = 0.15;
+/// ... up to this.
+const MOST_EVENNESS: f64 = 0.5;
+/// Aspect ratios up to this are left alone; beyond, elements are drawn back to it gently.
+const FREE_ASPECT: f64 = 6.0;
+
+/// Curvature of an element's energy (per unit of p · energy · thinness) in a corner that moves, seen from each
+/// of the two edges there, and in a bubble: means of the squared shape functions' slopes.
+const CORNER_STIFFNESS: f64 = 1.0 / 6.0;
+const BUBBLE_STIFFNESS: f64 = 1.5;
+
+impl Problem<'_> {
+    /// Length of each local edge as sampled last.
+    fn lengths(&self) -> Vec<f64> {
+        let k = self.reference.samples.len();
+        let length = |s: &[f64]| (1..k).map(|i| (s[i] - s[i - 1]).hypot(s[k + i] - s[k + i - 1])).sum();
+        self.samples.chunks_exact(4 * k).map(length).collect()
+    }
+
+    /// Takes aspect ratios, weights and error limits from the present state: they stay constant
+    /// during a minimisation.
+    pub fn refresh(&mut self) {
+        let x = std::mem::take(&mut self.unknowns);
+        self.sample(&x, false, None);
+        self.unknowns = x;
+        let lengths = self.lengths();
+        for element in &mut self.elements {
+            let l = element.edges.map(|e| lengths[e as usize]);
+            // Edges without length must not make a target of no size.
+            let floor = 1e-3 * l.iter().fold(0.0, |a: f64, b| a.max(*b)) + f64::MIN_POSITIVE;
+            let (l1, l2) = ((0.5 * (l[0] + l[2])).max(floor), (0.5 * (l[1] + l[3])).max(floor));
+            let area = area(element, &self.samples, self.reference.samples.len());
+            // Inverted elements have no area worth keeping.
+            let area = if area > 0.2 * l1 * l2 { area } else { l1 * l2 };
+            element.target = Target { ratio: tame(l2 / l1), area, evenness: EVENNESS };
+            element.thinness = 1.0 / (l1 * l1) + 1.0 / (l2 * l2);
+        }
+        self.refresh_evenness();
+        self.refresh_limits();
+    }
+
+    /// Sets the measure, and from the energies at the present state the metric and the barriers' weights:
+    /// with high powers a bad element is stiffer than the others by many orders of magnitude.
+    pub fn prepare(&mut self, measure: Measure) {
+        self.measure = measure;
+        let x = std::mem::take(&mut self.unknowns);
+        let finite = self.energy(&x).is_finite();
+        self.unknowns = x;
+        let mut at_vertex = vec![0.0; self.vertices.len()];
+        let mut at_edge = vec![0.0; self.edges.len()];
+        for element in &self.elements {
+            let energy = if finite { element.energy.max(1.0) } else { 1.0 };
+            let stiffness = energy * element.thinness;
+            for e in element.edges {
+                let edge = &mut self.edges[e as usize];
+                edge.urgency = energy;
+                at_edge[e as usize] += BUBBLE_STIFFNESS * stiffness;
+                for v in edge.vertices {
+                    at_vertex[v as usize] += CORNER_STIFFNESS * stiffness;
+                }
+            }
+        }
+        self.metric.clear();
+        self.metric.resize(self.unknowns.len(), 1.0);
+        for (vertex, stiffness) in self.vertices.iter().zip(at_vertex) {
+            match vertex.freedom {
+                Freedom::Fixed => {}
+                Freedom::Free(u) => self.metric[u as usize..u as usize + 2].fill(1.0 / stiffness),
+                Freedom::Slide { unknown, .. } => self.metric[unknown as usize] = 1.0 / stiffness,
+            }
+        }
+        for (edge, stiffness) in self.edges.iter().zip(at_edge) {
+            if let Shape::Interior { unknown } = edge.shape {
+                if unknown != NONE {
+                    let u = unknown as usize;
+                    self.metric[u..u + 2 * self.reference.bubbles].fill(1.0 / stiffness);
+                }
+            }
+        }
+    }
+
+    /// Limits of the boundary errors. The barrier's own error is of the L2 norm and by few points;
+    /// its limit is scaled by the present ratio of that to the true one.
+    fn refresh_limits(&mut self) {
+        self.error_ratio = 0.0;
+        let Some(tolerance) = self.tolerance else { return };
+        let (x, n) = (&self.unknowns, self.reference.nodes.len());
+        for edge in self.edges.iter_mut().filter(|e| e.moves) {
+            if let Shape::Boundary { chain, unknowns, offsets, nodes, limit, weight, length } =
+                &mut edge.shape
+            {
+                let [start, end] = arc_lengths(x, *unknowns, *offsets);
+                *length = end - start;
+                let own = &self.nodes[*nodes as usize..*nodes as usize + n];
+                let chain = &self.boundary.chains[*chain as usize];
+                let now = tolerance.of_chain(chain, start, end);
+                let value = tolerance.tolerance.value;
+                self.error_ratio = self.error_ratio.max(now / value);
+                let wanted = MARGIN * value;
+                (*limit, *weight) = if now < CLOSE * wanted {
+                    (wanted, TOLERANCE_WEIGHT)
+                } else if now < CLOSE * value {
+                    (value, RESCUE_WEIGHT)
+                } else {
+                    (ROOM * now, RESCUE_WEIGHT)
+                };
+                if now > 1e-3 * wanted {
+                    let seen = squared_error(self.reference, chain, start, *length, own).value.sqrt();
+                    *limit *= seen / now;
+                }
+            }
+        }
+    }
+
+    fn refresh_evenness(&mut self) {
+        for_samples!(self, weigh_elements)
+    }
+
+    /// Gives uneven elements more weight on evenness.
+    fn weigh_elements<const K: usize, const H: usize>(&mut self) {
+        let mut t = [0.0; K];
+        t.copy_from_slice(&self.reference.samples);
+        let mut sides = Sides::<K>::ZERO;
+        self.scaled_jacobian = f64::INFINITY;
+        for element in &mut self.elements {
+            for side in 0..4 {
+                let at = element.edges[side] as usize * 4 * K;
+                sides.read(side, &self.samples[at..at + 4 * K], element.flips[side]);
+            }
+            let Sampled { least, most, scaled } = kernel::jacobians(&t, &sides);
+            self.scaled_jacobian = self.scaled_jacobian.min(scaled);
+            let wanted = EVENNESS * UNEVEN * most / least;
+            // Inverted elements have other worries.
+            let wanted = if least > 0.0 { wanted } else { EVENNESS };
+            element.target.evenness = wanted.clamp(EVENNESS, MOST_EVENNESS);
+        }
+    }
+}
+
+/// Signed area inside an element's sampled sides.
+fn area(element: &LocalElement, samples: &[f64], k: usize) -> f64 {
+    let mut twice = 0.0;
+    for side in 0..4 {
+        let c = &samples[element.edges[side] as usize * 4 * k..];
+        let sum: f64 = (1..k).map(|i| c[i - 1] * c[k + i] - c[i] * c[k + i - 1]).sum();
+        // Sides 2 and 3 run clockwise.
+        twice += if element.flips[side] == (side < 2) { -sum } else { sum };
+    }
+    0.5 * twice
+}
+
+/// The aspect ratio to aim at where the present one is `ratio`.
+fn tame(ratio: f64) -> f64 {
+    if ratio > FREE_ASPECT {
+        FREE_ASPECT * (ratio / FREE_ASPECT).sqrt()
+    } else if ratio < 1.0 / FREE_ASPECT {
+        1.0 / tame(1.0 / ratio)
+    } else {
+        ratio
+    }
+}
