@@ -23,6 +23,8 @@ const SPOILED: f64 = 0.15;
 const PASSES: usize = 4;
 /// A renewed score counts as still the best at this share of the next one's old score.
 const STILL_BEST: f64 = 0.8;
+/// Rings around a change whose present quality bounds what it may cost: a little more than are optimised.
+const REGION: usize = 4;
 /// Growth of Σ (valence − ideal)² that a diagonal collapse may cost.
 const DIAGONAL_IRREGULARITY: isize = 2;
 
@@ -31,6 +33,8 @@ struct Coarsening<'a> {
     boundary: &'a Boundary,
     optimiser: &'a Optimiser<'a>,
     limits: Limits,
+    /// Whether all elements keep the limits from the start.
+    holds: bool,
     /// Least number of edges of each chain.
     least: Vec<usize>,
     mesh: QuadMesh,
@@ -81,15 +85,14 @@ pub fn coarsen(
             None => Ok(if chain.ends.is_none() { 3 } else { 1 }),
         })
         .collect::<Result<Vec<_>>>()?;
-    let limits = Limits {
-        scaled_jacobian: limits.scaled_jacobian.min(quality.min_scaled_jacobian),
-        jacobian_ratio: limits.jacobian_ratio.min(quality.min_jacobian_ratio),
-        // An element that is larger already must be allowed to stay.
-        size: limits.size.max(quality.elements.iter().map(|e| e.size).fold(0.0, f64::max)),
-    };
+    let largest = quality.elements.iter().map(|e| e.size).fold(0.0, f64::max);
+    let holds = quality.min_scaled_jacobian >= limits.scaled_jacobian
+        && quality.min_jacobian_ratio >= limits.jacobian_ratio
+        && largest <= limits.size;
     let stars = Stars::new(mesh.vertices.len(), &mesh.quads);
     let changed = vec![0; mesh.vertices.len()];
     let mut run = Coarsening {
+        holds,
         boundary,
         optimiser,
         limits,
@@ -164,10 +167,26 @@ impl Coarsening<'_> {
         quads.iter().flat_map(|q| self.mesh.quads[*q as usize]).any(|v| self.changed[v as usize] > time)
     }
 
-    /// Takes a finished change over if it holds; whether it did.
-    fn attempt(&mut self, change: Collapsed) -> bool {
+    /// The limits around the quads `at`: what is worse there already need not become better.
+    fn limits_at(&self, at: &[u32]) -> Limits {
+        if self.holds {
+            return self.limits;
+        }
+        let vertices: Vec<u32> = at.iter().flat_map(|q| self.mesh.quads[*q as usize]).collect();
+        let near = self.stars.rings(&self.mesh, &vertices, REGION);
+        let now = self.optimiser.quality_of(&self.mesh, Some(&near));
+        Limits {
+            scaled_jacobian: self.limits.scaled_jacobian.min(now.min_scaled_jacobian),
+            jacobian_ratio: self.limits.jacobian_ratio.min(now.min_jacobian_ratio),
+            size: now.elements.iter().map(|e| e.size).fold(self.limits.size, f64::max),
+        }
+    }
+
+    /// Takes a change, made at the quads `at`, over if it holds; whether it did.
+    fn attempt(&mut self, change: Collapsed, at: &[u32]) -> bool {
         let stars = change.stars.clone();
-        let Some((mesh, active)) = settle(self.optimiser, change, self.limits) else { return false };
+        let limits = self.limits_at(at);
+        let Some((mesh, active)) = settle(self.optimiser, change, limits) else { return false };
         self.time += 1;
         for v in active.iter().flat_map(|q| mesh.quads[*q as usize]) {
             self.changed[v as usize] = self.time;
@@ -220,7 +239,7 @@ impl Coarsening<'_> {
                         continue;
                     }
                 }
-                if self.attempt(change) {
+                if self.attempt(change, &chord.quads) {
                     accepted = true;
                     break;
                 }
@@ -266,7 +285,7 @@ impl Coarsening<'_> {
                 progress.report(Stage::Refine, 0.75)?;
                 let change = collapse(self.boundary, &self.mesh, &self.stars, &[(key, false)], &[q], &spare);
                 if let Ok(change) = change {
-                    if self.attempt(change) {
+                    if self.attempt(change, &[q]) {
                         accepted = true;
                         break;
                     }
