@@ -10,14 +10,14 @@ mod watch;
 
 use crate::domain::{Boundary, Domain};
 use crate::error::{Error, Result};
-use crate::mesh::{BoundaryTolerance, HighOrderMesh};
+use crate::mesh::{BoundaryTolerance, HighOrderMesh, QuadMesh};
 use crate::options::Options;
 use crate::progress::Stage;
 use crate::stages::Stages;
 use watch::Watch;
 
 /// Base meshes tried, each finer than the one before, until blocks and elements come out right.
-const ATTEMPTS: usize = 5;
+const ATTEMPTS: usize = 4;
 
 /// Share of the tolerance that the stages aim at: they measure on the boundary's tables, at their
 /// quadrature points, and the last optimisation may use all of what they allow.
@@ -55,14 +55,24 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
 
     let mut failure = None;
     let mut request = blocks::first_request(options, &boundary);
-    for _ in 0..ATTEMPTS {
-        match steps_1_to_9(domain, &boundary, options, &tolerance, &mut request, &mut watch, stages) {
+    for attempt in 1..=ATTEMPTS {
+        stages.begin_attempt(attempt);
+        // The stages speak of places in the canonical frame.
+        let elements = steps_1_to_9(&boundary, options, &tolerance, &mut request, &mut watch, stages)
+            .map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)));
+        // The proof: curved elements of order N with positive Jacobians, on the exact curves.
+        let result = elements.and_then(|elements| {
+            watch.run(stages, Stage::Mesh, |_| HighOrderMesh::new(&elements, &boundary, domain, &tolerance))
+        });
+        match result {
             Ok(mesh) => return Ok(mesh),
             Err(error @ (Error::Cancelled | Error::Callback { .. })) => return Err(error),
             Err(error) => {
-                let error = error.map_place(|p| boundary.frame.to_caller(p));
                 failure.get_or_insert(error);
             }
+        }
+        if watch.work > rounds::MOST_WORK {
+            break;
         }
         blocks::refine(&mut request, &boundary);
     }
@@ -70,14 +80,13 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
 }
 
 fn steps_1_to_9(
-    domain: &Domain,
     boundary: &Boundary,
     options: &Options,
     tolerance: &BoundaryTolerance,
     request: &mut crate::base_mesh::Request,
     watch: &mut Watch,
     stages: &mut Stages,
-) -> Result<HighOrderMesh> {
+) -> Result<QuadMesh> {
     // Steps 1 to 3: base mesh, cross field, singularities; refined until the index theorem holds.
     let field = blocks::field(boundary, options, request, watch, stages)?;
 
@@ -85,11 +94,8 @@ fn steps_1_to_9(
     let aim = &BoundaryTolerance { value: TOLERANCE_AIM * tolerance.value, ..*tolerance };
 
     // Steps 4 to 6: separatrices, quad-dominant regions, repair.
-    let layout = blocks::layout(boundary, options, aim, &field, watch, stages)?;
+    let (layout, sizes) = blocks::layout(boundary, options, aim, &field, watch, stages)?;
 
     // Steps 7 to 9: subdivide and smooth until every boundary edge meets the tolerance.
-    let mesh = rounds::refine_and_smooth(boundary, options, aim, &layout, watch, stages)?;
-
-    // The proof: curved elements of order N with positive Jacobians, on the exact curves.
-    watch.run(stages, Stage::Mesh, |_| HighOrderMesh::new(&mesh, boundary, domain, tolerance))
+    rounds::refine_and_smooth(boundary, options, aim, &layout, &sizes, watch, stages)
 }

@@ -4,6 +4,7 @@ use crate::base_mesh::Triangulation;
 use crate::cross_field::CrossField;
 use crate::domain::Boundary;
 use crate::layout::{BlockLayout, QuadLayout};
+use crate::mesh::QuadMesh;
 use crate::progress::Stage;
 use crate::separatrices::Separatrix;
 use crate::singularities::{CornerFan, Singularity};
@@ -31,12 +32,31 @@ pub struct Stages {
     pub separatrices: Vec<Separatrix>,
     pub block_layout: Option<BlockLayout>,
     pub quad_layout: Option<QuadLayout>,
+    /// The curved mesh as the rounds of steps 7 to 9 left it.
+    pub quad_mesh: Option<QuadMesh>,
+    /// Base mesh sizes tried: 1 unless blocks or elements came out wrong.
+    pub attempts: usize,
+    /// The rounds of the last attempt.
     pub rounds: Vec<Round>,
     /// Seconds spent in each stage, in the order of [`Stage::ALL`].
     pub seconds: [f64; 9],
     /// The last stage that finished.
     pub reached: Option<Stage>,
-    /// 0 none, 1 the paper's rules, 2 a pattern, 3 centroid stars.
+    /// What repaired the last attempt's layout: 0 nothing, 1 the paper's rules, 2 a pattern, 3 centroid stars.
     pub fallback: u8,
     pub warnings: Vec<String>,
+}
+
+impl Stages {
+    /// Forgets what an attempt before left, except its warnings and times.
+    pub(crate) fn begin_attempt(&mut self, attempt: usize) {
+        *self = Stages {
+            boundary: self.boundary.take(),
+            seconds: self.seconds,
+            reached: Some(Stage::Domain),
+            warnings: std::mem::take(&mut self.warnings),
+            attempts: attempt,
+            ..Stages::default()
+        };
+    }
 }

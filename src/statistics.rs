@@ -59,7 +59,9 @@ pub struct Statistics {
     pub boundary_error: Option<LoopErrors>,
     /// What repaired the layout: 0 nothing, 1 the paper's rules, 2 a pattern, 3 centroid stars.
     pub fallback: u8,
-    /// The rounds of steps 7 to 9.
+    /// Base mesh sizes tried.
+    pub attempts: usize,
+    /// The rounds of steps 7 to 9, of the last attempt.
     pub rounds: Vec<Round>,
     pub warnings: Vec<String>,
 }
@@ -90,6 +92,7 @@ impl Statistics {
             scaled_jacobian_ceiling: boundary.map(scaled_jacobian_ceiling),
             boundary_error: mesh.map(LoopErrors::of),
             fallback: stages.fallback,
+            attempts: stages.attempts,
             rounds: stages.rounds.clone(),
             warnings: stages.warnings.clone(),
         }

@@ -15,7 +15,7 @@ const EDGE_TURN: f64 = 0.9;
 /// Size of an element at a chain that is one edge, relative to the chain's length.
 const CHAIN_SHARE: f64 = 1.0;
 /// Growth of the size with the distance from the boundary.
-const GROWTH: f64 = 0.9;
+const GROWTH: f64 = 0.5;
 /// Largest size, relative to the square root of the domain's area.
 const LARGEST: f64 = 0.28;
 /// Longest element in base edges: bounds the aspect ratio in gaps.

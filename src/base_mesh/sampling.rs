@@ -220,7 +220,8 @@ impl<'a> Sampling<'a> {
                         ),
                     };
                     let spacing = chord.length().min(chords[(i + n - 1) % n].length());
-                    let on_grid = |x: f64| (x / SNAP_GRID).round() * SNAP_GRID;
+                    // No negative zero: that is another number to total orders.
+                    let on_grid = |x: f64| (x / SNAP_GRID).round() * SNAP_GRID + 0.0;
                     match snap && spacing >= SNAP_LEAST_CHORD {
                         true => (place, Point::new(on_grid(point.x), on_grid(point.y))),
                         false => (place, point),

@@ -17,6 +17,16 @@ pub fn quads_at_corner(angle: f64) -> u8 {
     (quarters - 0.5 - CORNER_TIE).ceil().clamp(1.0, 4.0) as u8
 }
 
+/// How many quads corners between about 32° and 45° get, which the field likes none and one alike.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Tips {
+    /// None, but one where that saves a five-valent singularity.
+    #[default]
+    Balanced,
+    /// One: for a second try, when lines ran into a tip.
+    OneQuad,
+}
+
 /// The border polygon as the field sees it.
 pub(super) struct Border {
     /// Interior angle at border vertices, else 0.
@@ -31,7 +41,7 @@ pub(super) struct Border {
 }
 
 impl Border {
-    pub fn new(mesh: &Triangulation, boundary: &Boundary) -> Result<Border> {
+    pub fn new(mesh: &Triangulation, boundary: &Boundary, tips: Tips) -> Result<Border> {
         let n = mesh.vertices.len();
         let mut border = Border {
             angle: vec![0.0; n],
@@ -49,14 +59,14 @@ impl Border {
                 border.turn_about(mesh, t, i)?;
             }
         }
-        border.raise_tips(mesh, boundary);
+        border.raise_tips(mesh, boundary, tips);
         Ok(border)
     }
 
     /// Near 45° none and one quad cost the field the same. Where the corners ask for more five-valent
     /// singularities than three-valent ones a tip's missing quad would bring another: it gets its one,
     /// the widest tips first.
-    fn raise_tips(&mut self, mesh: &Triangulation, boundary: &Boundary) {
+    fn raise_tips(&mut self, mesh: &Triangulation, boundary: &Boundary, rule: Tips) {
         let euler = 2 - boundary.loops.len() as i64;
         let corners: i64 = mesh.loops.iter().flatten().map(|&v| 2 - i64::from(self.quads[v as usize])).sum();
         let mut tips: Vec<(f64, u32)> = (mesh.loops.iter().flatten())
@@ -68,7 +78,10 @@ impl Border {
             .filter(|tip| tip.0 > TIP_DOUBT[0])
             .collect();
         tips.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let missing = (corners - 4 * euler).max(0) as usize;
+        let missing = match rule {
+            Tips::Balanced => (corners - 4 * euler).max(0) as usize,
+            Tips::OneQuad => tips.len(),
+        };
         for (_, v) in tips.into_iter().take(missing) {
             self.quads[v as usize] = 1;
         }

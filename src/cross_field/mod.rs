@@ -20,7 +20,7 @@ mod thickness;
 mod tips;
 mod turning;
 
-pub use border::quads_at_corner;
+pub use border::{quads_at_corner, Tips};
 
 use crate::base_mesh::Triangulation;
 use crate::domain::Boundary;
@@ -68,7 +68,20 @@ pub struct CrossField {
 /// [`Error::CrossField`](crate::Error::CrossField) if the linear system cannot be solved or
 /// the turns around a triangle do not add up to quarter turns (a degenerate mesh).
 pub fn solve(mesh: &Triangulation, boundary: &Boundary, method: FieldMethod) -> Result<CrossField> {
-    let border = border::Border::new(mesh, boundary)?;
+    solve_with_tips(mesh, boundary, method, Tips::Balanced)
+}
+
+/// [`solve`] with a choice of the quads at sharp corners.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_with_tips(
+    mesh: &Triangulation,
+    boundary: &Boundary,
+    method: FieldMethod,
+    tips: Tips,
+) -> Result<CrossField> {
+    let border = border::Border::new(mesh, boundary, tips)?;
     let held = tips::held(mesh, boundary, &border);
     let u = diffusion::solve(mesh, &border, &held, method)?;
     let triangles = turning::triangle_crosses(mesh, &border, &held, &u)?;

@@ -92,7 +92,8 @@ pub struct Boundary {
     pub area: f64,
     /// For each loop its index in [`Domain::loops`](crate::domain::Domain::loops).
     pub loop_sources: Vec<u32>,
-    /// Diagonal D of the caller's bounding box, in the canonical frame: relative tolerances refer to it.
+    /// Diagonal D that relative tolerances refer to, in the canonical frame: that of the bounding box in the
+    /// pose where it is least (within 1 % below), so that turning the domain changes nothing.
     pub diagonal: f64,
 }
 

@@ -16,6 +16,8 @@ use crate::numerics::{Point, Vector};
 /// The canonical pose and order.
 pub(crate) struct Canonical {
     pub frame: Frame,
+    /// The least diagonal of a bounding box in any pose, in the canonical frame.
+    pub least_diagonal: f64,
     /// Indices into [`Domain::loops`]: the outer one, then the holes.
     pub loops: Vec<usize>,
     /// For each of `loops` the segment it starts with.
@@ -55,6 +57,7 @@ pub(crate) fn canonical(domain: &Domain) -> Result<Canonical> {
     let axis = best_axis(&candidates, &samples, origin, radius);
     let mut frame = Frame { origin, scale: 1.0, axis };
     frame.scale = Bounds::of(&flat.iter().map(|&p| frame.to_canonical(p)).collect::<Vec<_>>()).diagonal();
+    let least_diagonal = least_diagonal(&flat.iter().map(|&p| frame.to_canonical(p)).collect::<Vec<_>>());
     let mut starts = Vec::new();
     let mut keys = Vec::new();
     for (l, own) in domain.loops().iter().zip(&turns) {
@@ -72,7 +75,22 @@ pub(crate) fn canonical(domain: &Domain) -> Result<Canonical> {
     loops.extend(sorted_holes(&keys[1..]).into_iter().map(|k| k + 1));
     let starts = loops.iter().map(|&l| starts[l]).collect();
     let turns = loops.iter().map(|&l| turns[l].clone()).collect();
-    Ok(Canonical { frame, loops, starts, turns })
+    Ok(Canonical { frame, least_diagonal, loops, starts, turns })
+}
+
+/// Poses in a quarter turn in which the bounding box is looked at.
+const POSES: usize = 128;
+
+/// A lower bound, by less than 1 %, of the bounding box's diagonal in any pose.
+fn least_diagonal(points: &[Point]) -> f64 {
+    let step = std::f64::consts::FRAC_PI_2 / POSES as f64;
+    let diagonal = |pose: usize| {
+        let (s, c) = (step * pose as f64).sin_cos();
+        let turned = |p: &Point| Point::new(c * p.x - s * p.y, s * p.x + c * p.y);
+        Bounds::of(&points.iter().map(turned).collect::<Vec<_>>()).diagonal()
+    };
+    // With the angle the diagonal changes by at most itself a radian.
+    (0..POSES).map(diagonal).fold(f64::INFINITY, f64::min) * (1.0 - 0.5 * step)
 }
 
 /// The points farthest from `origin`, up to rounding.

@@ -22,7 +22,7 @@ impl Boundary {
             loops: Vec::new(),
             area: domain.area()? / (frame.scale * frame.scale),
             loop_sources: pose.loops.iter().map(|&l| l as u32).collect(),
-            diagonal: domain.diagonal() / frame.scale,
+            diagonal: pose.least_diagonal,
         };
         for (k, &l) in pose.loops.iter().enumerate() {
             boundary.add_loop(domain, k, l, pose.starts[k], &pose.turns[k])?;

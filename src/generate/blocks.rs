@@ -2,7 +2,7 @@
 
 use super::watch::Watch;
 use crate::base_mesh::{self, ElementSize, Request, Triangulation};
-use crate::cross_field::{self, CrossField};
+use crate::cross_field::{self, CrossField, Tips};
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
 use crate::layout::{self, t_mesh, QuadLayout, Targets};
@@ -52,12 +52,14 @@ pub(super) fn field(
 ) -> Result<Field> {
     let usual = base_mesh::usual_size(boundary);
     let least = LEAST_REFINEMENT * request.size.map_or(usual, |h| h.min(usual));
+    let tips = if stages.attempts <= 1 { Tips::Balanced } else { Tips::OneQuad };
     let mut round = 0;
     loop {
         let mesh = watch.run(stages, Stage::BaseMesh, |_| base_mesh::triangulate(boundary, request))?;
         stages.triangulation = Some(mesh.clone());
-        let cross =
-            watch.run(stages, Stage::CrossField, |_| cross_field::solve(&mesh, boundary, options.field))?;
+        let cross = watch.run(stages, Stage::CrossField, |_| {
+            cross_field::solve_with_tips(&mesh, boundary, options.field, tips)
+        })?;
         stages.cross_field = Some(cross.clone());
         let found = singularities::find(&mesh, boundary, &cross);
         let known = found.as_ref().map_or(&[][..], |(singularities, _)| singularities);
@@ -75,7 +77,7 @@ pub(super) fn field(
     }
 }
 
-/// Separatrices, the T-mesh of regions, and its repair to conforming blocks.
+/// Separatrices, the T-mesh of regions, and its repair to conforming blocks; with the wanted sizes.
 pub(super) fn layout(
     boundary: &Boundary,
     options: &Options,
@@ -83,7 +85,7 @@ pub(super) fn layout(
     field: &Field,
     watch: &mut Watch,
     stages: &mut Stages,
-) -> Result<QuadLayout> {
+) -> Result<(QuadLayout, ElementSize)> {
     let Field { mesh, cross, singularities, corners } = field;
     let mut seeds = Vec::new();
     let mut regions = None;
@@ -103,6 +105,8 @@ pub(super) fn layout(
     let regions = regions
         .ok_or_else(|| Error::Layout { reason: "a region between two sharp corners".into(), at: None })?;
     stages.block_layout = Some(regions.clone());
+    let most = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
+    let sizes = ElementSize::new(mesh, boundary, most);
     let conforming = watch.run(stages, Stage::Layout, |_| {
         let error = BoundaryError::new(*tolerance);
         let mut minimum = Vec::with_capacity(boundary.chains.len());
@@ -110,13 +114,11 @@ pub(super) fn layout(
             let least = least_pieces(chain, &error)?;
             minimum.push(if least > 1 { (least as f64 * CHAIN_MARGIN).ceil() as u32 } else { 1 });
         }
-        let most = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
-        let sizes = ElementSize::new(mesh, boundary, most);
         let size = |p| sizes.at(p);
         layout::conform(&regions, boundary, &Targets::new(&size, &minimum))
     })?;
     stages.block_layout = Some(conforming.repaired);
     stages.fallback = stages.fallback.max(conforming.fallback);
     stages.quad_layout = Some(conforming.layout.clone());
-    Ok(conforming.layout)
+    Ok((conforming.layout, sizes))
 }

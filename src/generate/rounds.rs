@@ -1,6 +1,7 @@
 //! Steps 7 to 9: subdivide, smooth, coarsen; repeat until every boundary edge meets the tolerance.
 
 use super::watch::Watch;
+use crate::base_mesh::ElementSize;
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
 use crate::layout::QuadLayout;
@@ -13,7 +14,13 @@ use crate::stages::{Round, Stages};
 use std::collections::HashMap;
 
 /// Most rounds of subdivision and smoothing.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 5;
+/// Element evaluations (some microseconds each at order 5) after which no further round or attempt begins.
+pub(super) const MOST_WORK: usize = 6_000_000;
+/// Edge lengths in wanted sizes above which a chord is divided.
+const TOO_LONG: f64 = 2.5;
+/// Most elements, as a multiple of the first round's, before another layout is tried.
+const MOST_GROWTH: usize = 3;
 
 /// Makes the layout's quads curved elements that keep the tolerance.
 pub(super) fn refine_and_smooth(
@@ -21,6 +28,7 @@ pub(super) fn refine_and_smooth(
     options: &Options,
     tolerance: &BoundaryTolerance,
     layout: &QuadLayout,
+    sizes: &ElementSize,
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<QuadMesh> {
@@ -28,33 +36,48 @@ pub(super) fn refine_and_smooth(
     let optimiser = Optimiser::new(boundary, options.order, Some(*tolerance));
     let mut mesh = start(boundary, layout)?;
     note(stages, &optimiser, &mesh, "layout");
+    if stages.attempts > 1 {
+        mesh = watch.run(stages, Stage::Refine, |_| divide_long(mesh, boundary, sizes, options.order))?;
+    }
 
-    for _ in 0..ROUNDS {
-        // Step 7: boundary vertices where the tolerance wants them; edges divided where that is not enough.
-        mesh =
-            watch.run(stages, Stage::Refine, |_| refine::meet_tolerance(mesh, boundary, &error, options))?;
-        note(stages, &optimiser, &mesh, "subdivide");
+    // Step 7: boundary vertices where the tolerance wants them, edges divided where that is not enough.
+    mesh = watch.run(stages, Stage::Refine, |_| refine::meet_tolerance(mesh, boundary, &error, options))?;
+    note(stages, &optimiser, &mesh, "subdivide");
+    let most = MOST_GROWTH * mesh.quads.len();
+    for round in 0..ROUNDS {
         // Step 8: smooth, and untangle if need be.
-        let outcome =
-            watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut mesh, None, Effort::Full)))?;
-        note(stages, &optimiser, &mesh, "smooth");
-        // Step 9: until it holds.
-        if outcome.valid && outcome.error_ratio <= 1.0 {
+        let holds = |mesh: &QuadMesh| {
+            let quality = optimiser.quality(mesh);
+            quality.valid() && quality.error_ratio <= 1.0
+        };
+        if round > 0 && holds(&mesh) {
             break;
         }
-        if !outcome.valid {
-            let quality = optimiser.quality(&mesh);
+        let outcome =
+            watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut mesh, None, Effort::Full)))?;
+        watch.work += outcome.evaluations * mesh.quads.len();
+        note(stages, &optimiser, &mesh, "smooth");
+        // Step 9: again where it does not hold yet. Divided edges keep their shape, so what is valid stays so.
+        let quality = optimiser.quality(&mesh);
+        let mut marked = vec![false; mesh.edges.len()];
+        if quality.valid() {
+            for (e, marked) in marked.iter_mut().enumerate() {
+                *marked = optimiser.error_ratio(&mesh, e as u32) > 1.0;
+            }
+        } else {
             let inverted = |q: &usize| quality.elements[*q].jacobian_ratio <= 0.0;
-            let mut marked = vec![false; mesh.edges.len()];
             for e in (0..mesh.quads.len()).filter(inverted).flat_map(|q| mesh.quad_edges[q]) {
                 marked[e as usize] = true;
             }
-            mesh = watch.run(stages, Stage::Refine, |_| {
-                refine::split_chords(&mesh, boundary, &marked, options.order)
-                    .map_err(|(reason, at)| Error::Layout { reason, at: Some(at) })
-            })?;
-            note(stages, &optimiser, &mesh, "split inverted");
         }
+        if !marked.contains(&true) || mesh.quads.len() > most || watch.work > MOST_WORK {
+            break;
+        }
+        mesh = watch.run(stages, Stage::Refine, |_| {
+            refine::split_chords(&mesh, boundary, &marked, options.order)
+                .map_err(|(reason, at)| Error::Layout { reason, at: Some(at) })
+        })?;
+        note(stages, &optimiser, &mesh, "subdivide");
     }
     let quality = optimiser.quality(&mesh);
     if !quality.valid() {
@@ -66,14 +89,54 @@ pub(super) fn refine_and_smooth(
         let at = mesh.vertices[mesh.quads[worst][0] as usize].point;
         return Err(Error::InvalidElement { jacobian: quality.min_scaled_jacobian, at });
     }
-    if options.subdivision == Subdivision::EqualError {
+    if options.subdivision == Subdivision::EqualError && watch.work <= MOST_WORK {
         let limits = Limits::new(options.quality_floor);
         mesh = watch.run(stages, Stage::Refine, |_| {
             refine::coarsen(mesh, boundary, &optimiser, limits, &options.progress)
         })?;
         note(stages, &optimiser, &mesh, "coarsen");
-        watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut mesh, None, Effort::Full)))?;
-        note(stages, &optimiser, &mesh, "smooth");
+        // Kept only if nothing that holds is lost.
+        let before = optimiser.quality(&mesh);
+        let mut smoother = mesh.clone();
+        watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut smoother, None, Effort::Full)))?;
+        let after = optimiser.quality(&smoother);
+        if after.valid()
+            && after.error_ratio <= before.error_ratio.max(1.0)
+            && after.min_scaled_jacobian >= before.min_scaled_jacobian
+        {
+            mesh = smoother;
+            note(stages, &optimiser, &mesh, "smooth");
+        }
+    }
+    Ok(mesh)
+}
+
+/// For a second attempt: where the integer lengths left edges that are many times the wanted size, their chords are divided: an
+/// element from a small part straight to the far field could not be untangled.
+fn divide_long(
+    mut mesh: QuadMesh,
+    boundary: &Boundary,
+    sizes: &ElementSize,
+    order: usize,
+) -> Result<QuadMesh> {
+    let most = MOST_GROWTH * mesh.quads.len();
+    for _ in 0..ROUNDS {
+        let wanted = |e: &crate::mesh::Edge| {
+            let [a, b] = e.vertices.map(|v| mesh.vertices[v as usize].point);
+            let length = e.span.map_or((b - a).norm(), |s| s.end - s.start);
+            let points = [0.1, 0.3, 0.5, 0.7, 0.9].map(|t| a + (b - a) * t);
+            points.iter().map(|p| 0.2 * length / sizes.at(*p)).sum::<f64>()
+        };
+        let marked: Vec<bool> = mesh.edges.iter().map(|e| wanted(e) > TOO_LONG).collect();
+        if !marked.contains(&true) {
+            break;
+        }
+        let finer = refine::split_chords(&mesh, boundary, &marked, order)
+            .map_err(|(reason, at)| Error::Layout { reason, at: Some(at) })?;
+        if finer.quads.len() > most {
+            break;
+        }
+        mesh = finer;
     }
     Ok(mesh)
 }
@@ -92,6 +155,7 @@ fn start(boundary: &Boundary, layout: &QuadLayout) -> Result<QuadMesh> {
 /// Notes what a round left.
 fn note(stages: &mut Stages, optimiser: &Optimiser, mesh: &QuadMesh, action: &'static str) {
     let quality = optimiser.quality(mesh);
+    stages.quad_mesh = Some(mesh.clone());
     stages.rounds.push(Round {
         action,
         elements: mesh.quads.len(),

@@ -13,11 +13,13 @@ pub(super) struct Watch {
     progress: Progress,
     /// Progress never goes back, also when stages run again.
     reached: f64,
+    /// Element evaluations spent on smoothing.
+    pub work: usize,
 }
 
 impl Watch {
     pub fn new(options: &Options) -> Self {
-        Watch { progress: options.progress.clone(), reached: 0.0 }
+        Watch { progress: options.progress.clone(), reached: 0.0, work: 0 }
     }
 
     /// Reports `share` of `stage`, in 0..=1.

@@ -1,6 +1,6 @@
 //! The domain that comes with the library.
 //!
-//! GingerbreadMan.control is an example of HOHQMesh (https://github.com/trixi-framework/HOHQMesh,
+//! GingerbreadMan.control is an example of HOHQMesh (<https://github.com/trixi-framework/HOHQMesh>,
 //! MIT licence, copyright David A. Kopriva), unchanged.
 
 use crate::error::Result;

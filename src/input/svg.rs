@@ -1,4 +1,4 @@
-//! SVG files: their <path> elements, true arcs, the y axis turned up, filled by the even-odd rule.
+//! SVG files: their `<path>` elements, true arcs, the y axis turned up, filled by the even-odd rule.
 
 use crate::domain::{Domain, DomainBuilder, LoopKind};
 use crate::error::{Error, Result};

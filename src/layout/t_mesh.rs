@@ -215,8 +215,8 @@ fn add_border_arcs(b: &mut Builder, rays: &[Vec<(u8, SideArc)>], quads_at: &[u8]
             b.layout.arcs.push(Arc { nodes: [from, to], points, span: Some(span) });
             outside.extend([false, true]);
         }
-        for k in 0..n {
-            let node = nodes[k].1 as usize;
+        for (k, &(_, node)) in nodes.iter().enumerate() {
+            let node = node as usize;
             let out = SideArc { arc: first + k as u32, forward: true };
             let back = SideArc { arc: first + ((k + n - 1) % n) as u32, forward: false };
             let own = &rays[node];

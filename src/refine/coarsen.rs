@@ -13,6 +13,7 @@ use super::trial::{boundary_edges, compact, on_boundary, settle, Limits};
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
 use crate::mesh::QuadMesh;
+use crate::numerics::tolerances::ORDER_TIE;
 use crate::progress::{Progress, Stage};
 use crate::smooth::{Effort, Optimiser};
 use std::collections::{HashMap, HashSet};
@@ -23,10 +24,15 @@ const SPOILED: f64 = 0.15;
 const PASSES: usize = 4;
 /// A renewed score counts as still the best at this share of the next one's old score.
 const STILL_BEST: f64 = 0.8;
-/// Rings around a change whose present quality bounds what it may cost: a little more than are optimised.
-const REGION: usize = 4;
 /// Growth of Σ (valence − ideal)² that a diagonal collapse may cost.
 const DIAGONAL_IRREGULARITY: isize = 2;
+
+/// Most element evaluations of one coarsening (a few microseconds each at order 5): what is coarse
+/// enough by then is taken.
+const MOST_WORK: u64 = 1_500_000;
+
+/// Quads copied in the time of one element evaluation: a change that is only tried out costs a copy.
+const COPIES_PER_EVALUATION: u64 = 8;
 
 /// State of a coarsening.
 struct Coarsening<'a> {
@@ -45,6 +51,8 @@ struct Coarsening<'a> {
     changed: Vec<usize>,
     /// When each chord or diagonal was last refused.
     failed: HashMap<Key, usize>,
+    /// Element evaluations spent.
+    work: u64,
 }
 
 /// A chord's or diagonal's name that survives changes elsewhere: the least pair of vertices on it.
@@ -92,23 +100,24 @@ pub fn coarsen(
     let stars = Stars::new(mesh.vertices.len(), &mesh.quads);
     let changed = vec![0; mesh.vertices.len()];
     let mut run = Coarsening {
-        holds,
         boundary,
         optimiser,
         limits,
+        holds,
         least,
         mesh,
         stars,
         time: 0,
         changed,
         failed: HashMap::new(),
+        work: 0,
     };
     for pass in 0..PASSES {
         let before = run.time;
         progress.report(Stage::Refine, pass as f64 / PASSES as f64)?;
         run.remove_chords(progress)?;
         run.collapse_diagonals(progress)?;
-        if run.time == before {
+        if run.time == before || run.work > MOST_WORK {
             break;
         }
     }
@@ -167,13 +176,14 @@ impl Coarsening<'_> {
         quads.iter().flat_map(|q| self.mesh.quads[*q as usize]).any(|v| self.changed[v as usize] > time)
     }
 
-    /// The limits around the quads `at`: what is worse there already need not become better.
-    fn limits_at(&self, at: &[u32]) -> Limits {
+    /// The limits within some rings around the quads `at`: what is worse there already need not become
+    /// better.
+    fn limits_at(&self, at: &[u32], rings: usize) -> Limits {
         if self.holds {
             return self.limits;
         }
         let vertices: Vec<u32> = at.iter().flat_map(|q| self.mesh.quads[*q as usize]).collect();
-        let near = self.stars.rings(&self.mesh, &vertices, REGION);
+        let near = self.stars.rings(&self.mesh, &vertices, rings);
         let now = self.optimiser.quality_of(&self.mesh, Some(&near));
         Limits {
             scaled_jacobian: self.limits.scaled_jacobian.min(now.min_scaled_jacobian),
@@ -185,8 +195,10 @@ impl Coarsening<'_> {
     /// Takes a change, made at the quads `at`, over if it holds; whether it did.
     fn attempt(&mut self, change: Collapsed, at: &[u32]) -> bool {
         let stars = change.stars.clone();
-        let limits = self.limits_at(at);
-        let Some((mesh, active)) = settle(self.optimiser, change, limits) else { return false };
+        let mut work = 0;
+        let settled = settle(self.optimiser, change, &|rings| self.limits_at(at, rings), &mut work);
+        self.work += work;
+        let Some((mesh, active)) = settled else { return false };
         self.time += 1;
         for v in active.iter().flat_map(|q| mesh.quads[*q as usize]) {
             self.changed[v as usize] = self.time;
@@ -209,9 +221,15 @@ impl Coarsening<'_> {
                 {
                     continue;
                 }
+                if self.work > MOST_WORK {
+                    return Ok(());
+                }
                 if let Some((score, _)) = scores.get(&key) {
                     queue.push((*score, key, chord));
-                } else if let Ok(change) = self.merge_chord(&chord, &spare) {
+                    continue;
+                }
+                self.work += self.mesh.quads.len() as u64 / COPIES_PER_EVALUATION;
+                if let Ok(change) = self.merge_chord(&chord, &spare) {
                     let score = self.score(&change);
                     scores.insert(key, (score, self.time));
                     queue.push((score, key, chord));
@@ -245,11 +263,22 @@ impl Coarsening<'_> {
                 }
                 failed.insert(key);
                 self.failed.insert(key, self.time);
+                if self.work > MOST_WORK {
+                    return Ok(());
+                }
             }
-            if !accepted {
+            if !accepted || self.work > MOST_WORK {
                 return Ok(());
             }
         }
+    }
+
+    /// The quad with these two vertices at opposite corners.
+    fn quad_of_diagonal(&self, [a, b]: Key) -> Option<u32> {
+        self.stars.of(a).iter().copied().find(|&q| {
+            let quad = &self.mesh.quads[q as usize];
+            (0..4).any(|i| quad[i] == a && quad[(i + 2) % 4] == b)
+        })
     }
 
     fn collapse_diagonals(&mut self, progress: &Progress) -> Result<()> {
@@ -267,12 +296,16 @@ impl Coarsening<'_> {
                     {
                         continue;
                     }
+                    if self.work > MOST_WORK {
+                        return Ok(());
+                    }
+                    self.work += self.mesh.quads.len() as u64 / COPIES_PER_EVALUATION;
                     if let Ok(change) =
                         collapse(self.boundary, &self.mesh, &self.stars, &[(key, false)], &[q], &spare)
                     {
                         if change.irregularity <= DIAGONAL_IRREGULARITY {
                             let quality = self.optimiser.element_quality(&self.mesh, q);
-                            queue.push((change.irregularity, quality.size, key, q));
+                            queue.push((change.irregularity, (quality.size / ORDER_TIE).round(), key, q));
                             continue;
                         }
                     }
@@ -281,13 +314,23 @@ impl Coarsening<'_> {
             }
             queue.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
             let mut accepted = false;
-            for (_, _, key, q) in queue {
+            let start = self.time;
+            for (_, _, key, _) in queue {
                 progress.report(Stage::Refine, 0.75)?;
+                if self.work > MOST_WORK {
+                    return Ok(());
+                }
+                // Quads are renumbered by every change: find the diagonal's again, if it is still there.
+                let Some(q) = self.quad_of_diagonal(key) else { continue };
+                if self.time > start && self.changed_since(&[q], start) {
+                    continue;
+                }
+                let spare = self.spare();
                 let change = collapse(self.boundary, &self.mesh, &self.stars, &[(key, false)], &[q], &spare);
                 if let Ok(change) = change {
                     if self.attempt(change, &[q]) {
                         accepted = true;
-                        break;
+                        continue;
                     }
                 }
                 failed.insert(key);

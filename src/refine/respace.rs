@@ -4,6 +4,7 @@ use super::pieces::growth;
 use super::placement::place_equal_error;
 use crate::domain::{Boundary, BoundaryPoint, Place, Span};
 use crate::mesh::{BoundaryError, QuadMesh};
+use crate::numerics::tolerances::ORDER_TIE;
 
 /// Share of the tolerance that re-spaced edges aim at: room for the optimiser to slide.
 const AIM: f64 = 0.9;
@@ -45,9 +46,10 @@ pub(super) fn respace(
     };
     let mut ratios: Vec<f64> = (0..n).map(|i| ratio(&ends, i)).collect();
     let before = ends.clone();
+    let rank = |ratio: f64| (ratio / ORDER_TIE).round();
     let mut budget = 4 * n + 16;
     while let Some(worst) =
-        (0..n).filter(|i| ratios[*i] > ALLOWED).max_by(|a, b| ratios[*a].total_cmp(&ratios[*b]))
+        (0..n).filter(|i| ratios[*i] > ALLOWED).max_by(|a, b| rank(ratios[*a]).total_cmp(&rank(ratios[*b])))
     {
         let mut reach = 1;
         loop {

@@ -27,15 +27,20 @@ impl Limits {
 /// Rings of quads around a change that are re-optimised, and the effort, in turn until one will do.
 const ATTEMPTS: [(usize, Effort); 3] = [(1, Effort::Quick), (3, Effort::Quick), (3, Effort::Full)];
 
-/// A least Jacobian (over the element's area) from which more rings were never seen to bring elements back.
+/// A least Jacobian (over the element's area) after the first attempt from which a wider one has not been seen
+/// to help.
 const HOPELESS: f64 = -0.4;
+/// Share of the floor from which full effort may still reach it.
+const NEARLY: f64 = 0.8;
 
 /// Completes a merge: boundary vertices re-spaced, the surroundings optimised. The mesh, and the
-/// quads that were optimised, if `limits` hold for them; a second attempt costs more work.
+/// quads that were optimised, if the limits within so many rings hold for them; a second attempt costs more work. Adds the
+/// element evaluations spent to `work`.
 pub(super) fn settle(
     optimiser: &Optimiser,
     mut change: Collapsed,
-    limits: Limits,
+    limits_at: &dyn Fn(usize) -> Limits,
+    work: &mut u64,
 ) -> Option<(QuadMesh, Vec<u32>)> {
     let mesh = &mut change.mesh;
     let mut seeds = change.touched.clone();
@@ -53,14 +58,11 @@ pub(super) fn settle(
             seeds.extend(respace(optimiser.boundary(), error, mesh, chain)?);
         }
     }
-    let (mut done, mut hopeless) = (0, false);
     for (rings, effort) in ATTEMPTS {
         let active = change.stars.rings(mesh, &seeds, rings);
-        if hopeless && active.len() == done {
-            return None;
-        }
-        done = active.len();
+        let limits = limits_at(rings + 1);
         let outcome = optimiser.optimise(mesh, Some(&active), effort);
+        *work += (outcome.evaluations * active.len()) as u64;
         let quality = optimiser.quality_of(mesh, Some(&active));
         let others = quality.min_jacobian_ratio >= limits.jacobian_ratio
             && quality.error_ratio <= 1.0
@@ -69,8 +71,10 @@ pub(super) fn settle(
             return Some((change.mesh, active));
         }
         // More work lifts the scaled Jacobian, not the rest; and what is far off will not come back.
-        hopeless = !outcome.valid || !others || quality.min_scaled_jacobian < 0.5 * limits.scaled_jacobian;
-        if hopeless && (rings > 1 || outcome.least_jacobian < HOPELESS) {
+        let far_off = quality.min_scaled_jacobian < NEARLY * limits.scaled_jacobian;
+        let hopeless =
+            if rings == 1 { outcome.least_jacobian < HOPELESS } else { !outcome.valid || !others || far_off };
+        if hopeless {
             return None;
         }
     }

@@ -1,6 +1,6 @@
 //! Step 3 of the paper: singularities, inside and at corners.
 //!
-//! *In:* the [`CrossField`](crate::cross_field::CrossField).
+//! *In:* the [`CrossField`].
 //! *Out:* interior [`Singularity`]s, with the directions of their separatrices, and the [`CornerFan`]s.
 //! The index theorem 4χ = Σ (4 − valence) + Σ (2 − quads at the corner) is a hard gate.
 //!

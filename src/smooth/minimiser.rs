@@ -2,6 +2,8 @@
 //!
 //! Reference: J. Nocedal, S. Wright, *Numerical Optimization*, 2006, §7.2 (two-loop recursion).
 
+use crate::numerics::tolerances::UNKNOWN_GRID;
+
 /// Pairs kept.
 const MEMORY: usize = 10;
 /// Sufficient decrease (Armijo).
@@ -41,6 +43,7 @@ pub(super) struct Lbfgs {
     next_gradient: Vec<f64>,
     next: Vec<f64>,
     direction: Vec<f64>,
+    grid: Vec<f64>,
 }
 
 /// Four partial sums, so that additions need not wait for each other.
@@ -56,6 +59,26 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
+/// Spacing of the grid for a variable whose squared natural length is `metric`: a power of two, so that
+/// noise in the length leaves it the same.
+fn grid_cell(metric: f64) -> f64 {
+    UNKNOWN_GRID * (0.5 * (OFF_POWERS * metric).log2()).floor().exp2()
+}
+
+/// Rounded to the grid. Without it the rounding errors of the input, about doubled by every iteration, would
+/// decide what the minimum looks like.
+fn on_grid(x: f64, cell: f64) -> f64 {
+    let snapped = (x / cell).round() * cell;
+    if snapped.is_finite() {
+        snapped
+    } else {
+        x
+    }
+}
+
+/// Keeps lengths of simple ratio to the diagonal away from powers of two.
+const OFF_POWERS: f64 = 1.37;
+
 impl Lbfgs {
     fn resize(&mut self, n: usize) {
         self.s.resize_with(MEMORY, Vec::new);
@@ -65,6 +88,7 @@ impl Lbfgs {
             &mut self.next_gradient,
             &mut self.next,
             &mut self.direction,
+            &mut self.grid,
         ]) {
             v.resize(n, 0.0);
         }
@@ -72,7 +96,7 @@ impl Lbfgs {
 
     /// Minimises from `x`, which must be feasible, and leaves the best point there. `metric[i]` is the
     /// square of a length natural to variable i: the first inverse Hessian up to a factor. No
-    /// variable moves further than `reach` · √metric in one step.
+    /// variable moves further than `reach` · √metric in one step; all stop on a grid fine against √metric.
     pub fn minimise(
         &mut self,
         objective: &mut impl Objective,
@@ -83,6 +107,9 @@ impl Lbfgs {
     ) -> Minimum {
         let n = x.len();
         self.resize(n);
+        for (cell, metric) in self.grid.iter_mut().zip(metric) {
+            *cell = grid_cell(*metric);
+        }
         let mut value = objective.evaluate(x, &mut self.gradient);
         let mut evaluations = 1;
         let (mut kept, mut head) = (0, 0);
@@ -107,7 +134,7 @@ impl Lbfgs {
             let mut found = None;
             for _ in 0..HALVINGS {
                 for (k, next) in self.next.iter_mut().enumerate() {
-                    *next = x[k] + t * self.direction[k];
+                    *next = on_grid(x[k] + t * self.direction[k], self.grid[k]);
                 }
                 let trial = objective.evaluate(&self.next, &mut self.next_gradient);
                 evaluations += 1;

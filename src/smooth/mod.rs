@@ -16,17 +16,15 @@
 //! M. Staten, *An approach to combined Laplacian and optimization-based smoothing*, 1998.
 
 mod edge_error;
-mod evaluation;
 mod kernel;
 mod laplacian;
+mod local;
 mod minimiser;
 mod optimiser;
 mod pair;
 mod problem;
 mod quality;
 mod reference;
-mod restart;
-mod scales;
 mod untangle;
 mod walk;
 

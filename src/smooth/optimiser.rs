@@ -1,6 +1,7 @@
 //! The one optimiser: untangles if it must, then raises the power of the shape energy.
 
 use super::kernel::Measure;
+use super::local::untangle_locally;
 use super::minimiser::{Lbfgs, Limits};
 use super::problem::Problem;
 use super::quality::{self, ElementQuality, Quality};
@@ -51,17 +52,37 @@ enum Prepare {
     Spread,
 }
 
-struct Schedule {
+pub(super) struct Schedule {
     powers: &'static [u32],
     steps: usize,
     progress: f64,
     /// Ways to untangle, in turn until one works; `true`: boundary vertices slide.
     ways: &'static [(Prepare, bool)],
-    untangle_rounds: usize,
-    untangle_steps: usize,
+    pub untangle_rounds: usize,
+    pub untangle_steps: usize,
+    /// Least share by which untangling lowers its bound in a round: less is surer, more is faster.
+    pub untangle_decrease: f64,
 }
 
+/// Quads up to which an optimisation may take all its steps; on larger meshes steps are fewer, so that
+/// the work grows no faster than the mesh.
+const FULL_STEPS: usize = 1200;
+/// Fewest steps of a round.
+const LEAST_STEPS: usize = 12;
+
 impl Effort {
+    /// The schedule for so many quads.
+    fn schedule_for(self, quads: usize) -> Schedule {
+        let schedule = self.schedule();
+        let scaled = |steps: usize| (steps * FULL_STEPS / quads.max(FULL_STEPS)).max(LEAST_STEPS.min(steps));
+        Schedule {
+            steps: scaled(schedule.steps),
+            untangle_steps: scaled(schedule.untangle_steps),
+            untangle_rounds: scaled(schedule.untangle_rounds),
+            ..schedule
+        }
+    }
+
     fn schedule(self) -> Schedule {
         match self {
             Effort::Quick => Schedule {
@@ -71,6 +92,7 @@ impl Effort {
                 ways: &[(Prepare::Nothing, true)],
                 untangle_rounds: 6,
                 untangle_steps: 25,
+                untangle_decrease: 0.5,
             },
             Effort::Full => Schedule {
                 powers: &[2, 4, 8, 8],
@@ -87,6 +109,7 @@ impl Effort {
                 ],
                 untangle_rounds: 20,
                 untangle_steps: 50,
+                untangle_decrease: 0.1,
             },
         }
     }
@@ -181,7 +204,8 @@ impl<'a> Optimiser<'a> {
         }
     }
 
-    fn problem<'b>(
+    /// `mesh` as a function of what may move.
+    pub(super) fn problem<'b>(
         &'b self,
         reference: &'b Reference,
         mesh: &QuadMesh,
@@ -200,10 +224,15 @@ impl<'a> Optimiser<'a> {
         effort: Effort,
         evaluations: &mut usize,
     ) -> State {
-        let schedule = effort.schedule();
+        let schedule = effort.schedule_for(active.map_or(mesh.quads.len(), <[u32]>::len));
         let mut lbfgs = Lbfgs::default();
         let mut problem = self.problem(reference, mesh, active, true);
         let mut valid = problem.least_jacobian() > 0.0;
+        if !valid && active.is_none() {
+            untangle_locally(self, reference, mesh, &schedule, evaluations);
+            problem = self.problem(reference, mesh, active, true);
+            valid = problem.least_jacobian() > 0.0;
+        }
         if !valid {
             for (prepare, slide) in schedule.ways.iter().copied() {
                 // Boundary vertices are only prepared where they can slide.
@@ -220,8 +249,7 @@ impl<'a> Optimiser<'a> {
                         }
                     }
                 }
-                let (rounds, steps) = (schedule.untangle_rounds, schedule.untangle_steps);
-                valid = untangle(&mut problem, &mut lbfgs, rounds, steps, evaluations);
+                valid = untangle(&mut problem, &mut lbfgs, &schedule, evaluations);
                 problem.store(mesh);
                 if valid {
                     break;

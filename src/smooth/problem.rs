@@ -1,15 +1,26 @@
 //! A mesh, or a few of its quads, as a function of unknowns: interior vertices, arc lengths of boundary
 //! vertices, bubbles of interior edges.
 
-use super::kernel::{Measure, Target};
-use super::reference::Reference;
-use super::scales::EVENNESS;
+mod gather;
+mod limits;
+mod metric;
+mod restart;
+mod sampling;
+mod unknowns;
+
+use super::kernel::{self, Measure, Sides, Target};
+use super::minimiser::Objective;
+use super::reference::{Reference, MAX_SAMPLES};
 use crate::domain::{Boundary, BoundaryPoint, Place, Span};
 use crate::mesh::{BoundaryError, QuadMesh};
 use crate::numerics::{Point, Vector, NONE};
+use sampling::arc_lengths;
+
+/// Weight of an even Jacobian against angles in the shape energy; uneven elements get more.
+const EVENNESS: f64 = 0.1;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Freedom {
+enum Freedom {
     Fixed,
     /// First of two unknowns, x and y.
     Free(u32),
@@ -21,17 +32,17 @@ pub(super) enum Freedom {
 }
 
 #[derive(Debug, Clone, Copy)]
-pub(super) struct LocalVertex {
-    pub global: u32,
-    pub freedom: Freedom,
-    pub point: Vector,
+struct LocalVertex {
+    global: u32,
+    freedom: Freedom,
+    point: Vector,
     /// dx/ds where the vertex slides.
-    pub tangent: Vector,
-    pub gradient: Vector,
+    tangent: Vector,
+    gradient: Vector,
 }
 
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Shape {
+enum Shape {
     /// First of the bubbles' unknowns, x then y each; `NONE`: the shape is fixed.
     Interior { unknown: u32 },
     /// Arc length of each end: an unknown plus an offset, or (with `NONE`) the offset.
@@ -39,52 +50,49 @@ pub(super) enum Shape {
         chain: u32,
         unknowns: [u32; 2],
         offsets: [f64; 2],
-        /// First of its nodes.
         nodes: u32,
-        /// Limit of the error as the barrier measures it, and the barrier's weight.
         limit: f64,
         weight: f64,
-        /// Length at the last refresh.
         length: f64,
     },
 }
 
 #[derive(Debug, Clone, Copy)]
-pub(super) struct LocalEdge {
-    pub global: u32,
-    pub vertices: [u32; 2],
-    pub shape: Shape,
-    pub moves: bool,
-    /// Energy of the element beside (boundary edges), at least 1: what its barriers have to match.
-    pub urgency: f64,
+struct LocalEdge {
+    global: u32,
+    vertices: [u32; 2],
+    shape: Shape,
+    moves: bool,
+    /// Energy of the element beside, at least 1: what the barriers of a boundary edge have to match.
+    urgency: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
-pub(super) struct LocalElement {
+struct LocalElement {
     /// Edges along ξ, η, ξ, η (sides 0, 1, 2, 3), and whether each is read backwards.
-    pub edges: [u32; 4],
-    pub flips: [bool; 4],
-    pub target: Target,
+    edges: [u32; 4],
+    flips: [bool; 4],
+    target: Target,
     /// 1/ℓ₁² + 1/ℓ₂².
-    pub thinness: f64,
+    thinness: f64,
     /// p times the energy at the last evaluation.
-    pub energy: f64,
+    energy: f64,
 }
 
 /// See the module. Arrays are filled once; evaluation allocates nothing.
 #[derive(Debug, Clone)]
 pub(super) struct Problem<'a> {
-    pub boundary: &'a Boundary,
-    pub reference: &'a Reference,
-    pub tolerance: Option<&'a BoundaryError>,
-    pub vertices: Vec<LocalVertex>,
-    pub edges: Vec<LocalEdge>,
-    pub elements: Vec<LocalElement>,
+    boundary: &'a Boundary,
+    reference: &'a Reference,
+    tolerance: Option<&'a BoundaryError>,
+    vertices: Vec<LocalVertex>,
+    edges: Vec<LocalEdge>,
+    elements: Vec<LocalElement>,
     /// Per edge 4 K numbers: x, y and slopes of x, y at the samples; and the gradient to them.
-    pub samples: Vec<f64>,
-    pub adjoint: Vec<f64>,
+    samples: Vec<f64>,
+    adjoint: Vec<f64>,
     /// Point and derivative at the nodes of boundary edges.
-    pub nodes: Vec<[Vector; 2]>,
+    nodes: Vec<[Vector; 2]>,
     pub unknowns: Vec<f64>,
     /// Squares of natural lengths of the unknowns.
     pub metric: Vec<f64>,
@@ -97,160 +105,45 @@ pub(super) struct Problem<'a> {
     pub least: f64,
 }
 
+/// Calls a method that is generic in the number of samples and of pairs of them.
+macro_rules! for_samples {
+    ($problem:expr, $method:ident) => {
+        match $problem.reference.samples.len() {
+            3 => $problem.$method::<3, 2>(),
+            4 => $problem.$method::<4, 2>(),
+            5 => $problem.$method::<5, 3>(),
+            6 => $problem.$method::<6, 3>(),
+            7 => $problem.$method::<7, 4>(),
+            8 => $problem.$method::<8, 4>(),
+            9 => $problem.$method::<9, 5>(),
+            10 => $problem.$method::<10, 5>(),
+            11 => $problem.$method::<11, 6>(),
+            _ => $problem.$method::<MAX_SAMPLES, { MAX_SAMPLES / 2 }>(),
+        }
+    };
+}
+
 impl<'a> Problem<'a> {
-    /// Quads `active` (all if `None`) of `mesh`: what has a neighbour outside stays fixed; so do
-    /// boundary vertices unless `slide`.
-    pub fn new(
-        boundary: &'a Boundary,
-        reference: &'a Reference,
-        tolerance: Option<&'a BoundaryError>,
-        mesh: &QuadMesh,
-        active: Option<&[u32]>,
-        slide: bool,
-    ) -> Self {
-        let all: Vec<u32>;
-        let active = match active {
-            Some(list) => list,
-            None => {
-                all = (0..mesh.quads.len() as u32).collect();
-                &all
-            }
-        };
-        let mut inside = vec![false; mesh.quads.len()];
-        active.iter().for_each(|q| inside[*q as usize] = true);
-        let is_inside = |q: u32| q == NONE || inside[q as usize];
-        let mut vertex_of = vec![NONE; mesh.vertices.len()];
-        let mut edge_of = vec![NONE; mesh.edges.len()];
-        let (mut vertices, mut edges) = (Vec::new(), Vec::new());
-        let mut pinned = Vec::new();
-        for q in active {
-            for e in mesh.quad_edges[*q as usize] {
-                if edge_of[e as usize] != NONE {
-                    continue;
-                }
-                edge_of[e as usize] = edges.len() as u32;
-                let edge = &mesh.edges[e as usize];
-                let rim = !edge.quads.iter().all(|q| is_inside(*q));
-                let ends = edge.vertices.map(|v| {
-                    if vertex_of[v as usize] == NONE {
-                        vertex_of[v as usize] = vertices.len() as u32;
-                        vertices.push(LocalVertex {
-                            global: v,
-                            freedom: Freedom::Fixed,
-                            point: mesh.vertices[v as usize].point.coords,
-                            tangent: Vector::zeros(),
-                            gradient: Vector::zeros(),
-                        });
-                        pinned.push(false);
-                    }
-                    let v = vertex_of[v as usize];
-                    pinned[v as usize] |= rim;
-                    v
-                });
-                let shape = Shape::Interior { unknown: if rim { NONE } else { 0 } };
-                edges.push(LocalEdge { global: e, vertices: ends, shape, moves: false, urgency: 1.0 });
-            }
-        }
-        let mut problem = Problem {
-            boundary,
-            reference,
-            tolerance,
-            vertices,
-            edges,
-            elements: Vec::with_capacity(active.len()),
-            samples: Vec::new(),
-            adjoint: Vec::new(),
-            nodes: Vec::new(),
-            unknowns: Vec::new(),
-            metric: Vec::new(),
-            measure: Measure::Shape(2),
-            scaled_jacobian: 0.0,
-            error_ratio: 0.0,
-            least: 0.0,
-        };
-        problem.place_unknowns(mesh, &pinned, slide);
-        for q in active {
-            let quad = mesh.quads[*q as usize];
-            let global = mesh.quad_edges[*q as usize];
-            let edges = global.map(|e| edge_of[e as usize]);
-            if !edges.iter().any(|e| problem.edges[*e as usize].moves) {
-                continue;
-            }
-            let starts = [quad[0], quad[1], quad[3], quad[0]];
-            let flips = [0, 1, 2, 3].map(|i| mesh.edges[global[i] as usize].vertices[0] != starts[i]);
-            let target = Target { ratio: 1.0, area: 1.0, evenness: EVENNESS };
-            problem.elements.push(LocalElement { edges, flips, target, thinness: 1.0, energy: 1.0 });
-        }
-        let k4 = 4 * reference.samples.len();
-        problem.samples = vec![0.0; problem.edges.len() * k4];
-        problem.adjoint = problem.samples.clone();
-        let unknowns = std::mem::take(&mut problem.unknowns);
-        problem.sample(&unknowns, true, Some(mesh));
-        problem.unknowns = unknowns;
-        problem.refresh();
-        problem
+    /// The value at `x`, alone.
+    pub fn energy(&mut self, x: &[f64]) -> f64 {
+        let mut gradient = vec![0.0; x.len()];
+        self.evaluate(x, &mut gradient)
     }
 
-    /// Numbers the unknowns and sets their values.
-    fn place_unknowns(&mut self, mesh: &QuadMesh, pinned: &[bool], slide: bool) {
-        for (vertex, pinned) in self.vertices.iter_mut().zip(pinned) {
-            let unknown = self.unknowns.len() as u32;
-            match mesh.vertices[vertex.global as usize].place {
-                _ if *pinned => {}
-                Place::Interior => {
-                    vertex.freedom = Freedom::Free(unknown);
-                    self.unknowns.extend([vertex.point.x, vertex.point.y]);
-                }
-                Place::Boundary(BoundaryPoint { chain, s }) if slide => {
-                    vertex.freedom = Freedom::Slide { unknown, chain };
-                    self.unknowns.push(s);
-                }
-                _ => {}
-            }
-        }
-        let bubbles = self.reference.bubbles;
-        let moving = |v: &LocalVertex| v.freedom != Freedom::Fixed;
-        for edge in &mut self.edges {
-            let own = &mesh.edges[edge.global as usize];
-            let ends = edge.vertices.map(|v| self.vertices[v as usize]);
-            edge.moves = ends.iter().any(moving);
-            if let Some(Span { chain, start, end }) = own.span {
-                let closed = self.boundary.chains[chain as usize].ends.is_none();
-                let mut offsets = [start, end];
-                let mut unknowns = [NONE; 2];
-                for k in 0..2 {
-                    if let Freedom::Slide { unknown, .. } = ends[k].freedom {
-                        unknowns[k] = unknown;
-                        offsets[k] -= self.unknowns[unknown as usize];
-                        if !closed {
-                            offsets[k] = 0.0;
-                        }
-                    }
-                }
-                let nodes = self.nodes.len() as u32;
-                self.nodes.resize(self.nodes.len() + self.reference.nodes.len(), [Vector::zeros(); 2]);
-                let length = end - start;
-                edge.shape = Shape::Boundary {
-                    chain,
-                    unknowns,
-                    offsets,
-                    nodes,
-                    limit: f64::INFINITY,
-                    weight: 0.0,
-                    length,
-                };
-            } else if let Shape::Interior { unknown } = &mut edge.shape {
-                if *unknown != NONE && bubbles > 0 {
-                    edge.moves = true;
-                    *unknown = self.unknowns.len() as u32;
-                    for m in 0..bubbles {
-                        let b = own.bubbles.get(m).copied().unwrap_or_else(Vector::zeros);
-                        self.unknowns.extend([b.x, b.y]);
-                    }
-                } else {
-                    *unknown = NONE;
-                }
-            }
+    /// The least d/A over all samples at the present unknowns: positive if nothing is inverted there.
+    pub fn least_jacobian(&mut self) -> f64 {
+        let measure = std::mem::replace(&mut self.measure, Measure::Regularised { epsilon: 1.0 });
+        let x = std::mem::take(&mut self.unknowns);
+        let mut gradient = vec![0.0; x.len()];
+        let value = self.evaluate(&x, &mut gradient);
+        self.unknowns = x;
+        self.measure = measure;
+        if value.is_finite() && !self.elements.is_empty() {
+            self.least
+        } else if self.elements.is_empty() {
+            f64::INFINITY
+        } else {
+            f64::NEG_INFINITY
         }
     }
 
@@ -288,16 +181,61 @@ impl<'a> Problem<'a> {
             }
         }
     }
+
+    fn refresh_evenness(&mut self) {
+        for_samples!(self, weigh_elements)
+    }
+
+    fn evaluate_elements<const K: usize, const H: usize>(&mut self) -> f64 {
+        let mut t = [0.0; K];
+        t.copy_from_slice(&self.reference.samples);
+        let (mut sides, mut gradient) = (Sides::<K>::ZERO, Sides::<K>::ZERO);
+        let (mut sum, mut least) = (0.0, f64::INFINITY);
+        let power = if let Measure::Shape(p) = self.measure { p as f64 } else { 1.0 };
+        for element in &mut self.elements {
+            for side in 0..4 {
+                let at = element.edges[side] as usize * 4 * K;
+                sides.read(side, &self.samples[at..at + 4 * K], element.flips[side]);
+            }
+            match kernel::element::<K, H>(self.measure, &t, &sides, element.target, &mut gradient) {
+                None => return f64::INFINITY,
+                Some((energy, jacobian)) => {
+                    sum += energy;
+                    element.energy = power * energy;
+                    least = least.min(jacobian);
+                }
+            }
+            for side in 0..4 {
+                let at = element.edges[side] as usize * 4 * K;
+                gradient.add_to(side, &mut self.adjoint[at..at + 4 * K], element.flips[side]);
+            }
+        }
+        self.least = least;
+        sum
+    }
 }
 
-/// Arc lengths of a boundary edge's ends.
-pub(super) fn arc_lengths(x: &[f64], unknowns: [u32; 2], offsets: [f64; 2]) -> [f64; 2] {
-    [0, 1].map(|i| if unknowns[i] == NONE { offsets[i] } else { offsets[i] + x[unknowns[i] as usize] })
+impl Objective for Problem<'_> {
+    fn evaluate(&mut self, x: &[f64], gradient: &mut [f64]) -> f64 {
+        if !self.sample(x, false, None) {
+            return f64::INFINITY;
+        }
+        self.adjoint.fill(0.0);
+        let energy = for_samples!(self, evaluate_elements);
+        if !energy.is_finite() {
+            return f64::INFINITY;
+        }
+        let total = energy + self.gather(x, gradient);
+        if total.is_nan() {
+            f64::INFINITY
+        } else {
+            total
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::minimiser::Objective;
     use super::*;
     use crate::domain::{Chain, Frame, Sample};
     use crate::mesh::{BoundaryTolerance, Vertex};

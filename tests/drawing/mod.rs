@@ -1,4 +1,5 @@
 //! Layouts drawn by hand: points, regions as lists of sides, the boundary found from them.
+#![allow(dead_code)] // not every test file uses all
 
 use quadrel::domain::{Boundary, BoundaryPoint, Chain, Frame, Junction, Place, Sample, Span};
 use quadrel::layout::{Arc, BlockLayout, Node, NodeKind, QuadLayout, Region, SideArc};
@@ -8,6 +9,8 @@ use std::collections::BTreeMap;
 /// A boundary without any loop yet.
 pub fn nowhere() -> Boundary {
     Boundary {
+        diagonal: 1.0,
+        loop_sources: Vec::new(),
         frame: Frame::identity(),
         names: vec!["wall".into()],
         chains: Vec::new(),
@@ -33,6 +36,7 @@ pub fn add_loop(boundary: &mut Boundary, chains: &[Vec<Point>]) {
     let (n, first) = (chains.len() as u32, boundary.junctions.len() as u32);
     let first_chain = boundary.chains.len() as u32;
     let loop_index = boundary.loops.len() as u32;
+    boundary.loop_sources.push(loop_index);
     boundary.loops.push((first_chain..first_chain + n).collect());
     for (i, points) in chains.iter().enumerate() {
         let i = i as u32;

@@ -121,6 +121,9 @@ fn quality(text: &mut String, statistics: &Statistics) {
         let more = error.loops.len().saturating_sub(MOST_LOOPS);
         let _ = writeln!(text, "{}", if more > 0 { format!(" and {more} more") } else { String::new() });
     }
+    if statistics.attempts > 1 {
+        let _ = writeln!(text, "attempts         {} base mesh sizes were tried", statistics.attempts);
+    }
     if statistics.fallback > 0 {
         let by = ["", "the paper's rules", "patterns", "centroid stars"];
         let by = by.get(usize::from(statistics.fallback)).unwrap_or(&"other means");

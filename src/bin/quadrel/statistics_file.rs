@@ -51,6 +51,7 @@ pub fn to_json(statistics: &Statistics) -> Value {
             "loops": statistics.boundary_error.as_ref().map(|e| list(&e.loops)),
         },
         "fallback": statistics.fallback,
+        "attempts": statistics.attempts,
         "rounds": rounds,
         "warnings": statistics.warnings,
     })

@@ -1,36 +1,26 @@
-//! Scales of a [`Problem`]: what elements are measured against, how far unknowns naturally move, where the
-//! barriers stand and what they weigh.
+//! What stays constant during a minimisation: aspect ratios, weights, error limits.
 
-use super::edge_error::squared_error;
-use super::evaluation::for_samples;
-use super::kernel::{self, Measure, Sampled, Sides, Target};
-use super::problem::{arc_lengths, Freedom, LocalElement, Problem, Shape};
-use super::reference::MAX_SAMPLES;
-use crate::numerics::NONE;
+use super::sampling::arc_lengths;
+use super::{LocalElement, Problem, Shape, EVENNESS};
+use crate::smooth::edge_error::squared_error;
+use crate::smooth::kernel::{self, Sampled, Sides, Target};
 
-/// Weight of the tolerance's barrier against the shape energy, whose optimum is 1/p an element.
-const TOLERANCE_WEIGHT: f64 = 2e-2;
 /// The barrier stands this much before the tolerance.
 const MARGIN: f64 = 0.98;
 /// Errors closer to a limit than this share are taken as above it.
 const CLOSE: f64 = 0.995;
 /// Room given to an edge whose error is above the tolerance.
-const ROOM: f64 = 1.05;
+const ROOM: f64 = 1.002;
 /// Weight of the barrier on such edges, which are to come back below.
 const RESCUE_WEIGHT: f64 = 0.2;
-/// Weight of an even Jacobian against angles in the shape energy ...
-pub(super) const EVENNESS: f64 = 0.1;
-/// ... which grows where its least value falls below this share of its largest, ...
+/// Weight of the tolerance's barrier against the shape energy, whose optimum is 1/p an element.
+const TOLERANCE_WEIGHT: f64 = 2e-2;
+/// The weight of evenness grows where an element's Jacobian is uneven: its least value falls below this share of its largest, ...
 const UNEVEN: f64 = 0.15;
 /// ... up to this.
 const MOST_EVENNESS: f64 = 0.5;
 /// Aspect ratios up to this are left alone; beyond, elements are drawn back to it gently.
 const FREE_ASPECT: f64 = 6.0;
-
-/// Curvature of an element's energy (per unit of p · energy · thinness) in a corner that moves, seen from each
-/// of the two edges there, and in a bubble: means of the squared shape functions' slopes.
-const CORNER_STIFFNESS: f64 = 1.0 / 6.0;
-const BUBBLE_STIFFNESS: f64 = 1.5;
 
 impl Problem<'_> {
     /// Length of each local edge as sampled last.
@@ -40,8 +30,8 @@ impl Problem<'_> {
         self.samples.chunks_exact(4 * k).map(length).collect()
     }
 
-    /// Takes aspect ratios, weights and error limits from the present state: they stay constant
-    /// during a minimisation.
+    /// Takes aspect ratios, weights and error limits from the present state: they stay
+    /// constant during a minimisation.
     pub fn refresh(&mut self) {
         let x = std::mem::take(&mut self.unknowns);
         self.sample(&x, false, None);
@@ -60,46 +50,6 @@ impl Problem<'_> {
         }
         self.refresh_evenness();
         self.refresh_limits();
-    }
-
-    /// Sets the measure, and from the energies at the present state the metric and the barriers' weights:
-    /// with high powers a bad element is stiffer than the others by many orders of magnitude.
-    pub fn prepare(&mut self, measure: Measure) {
-        self.measure = measure;
-        let x = std::mem::take(&mut self.unknowns);
-        let finite = self.energy(&x).is_finite();
-        self.unknowns = x;
-        let mut at_vertex = vec![0.0; self.vertices.len()];
-        let mut at_edge = vec![0.0; self.edges.len()];
-        for element in &self.elements {
-            let energy = if finite { element.energy.max(1.0) } else { 1.0 };
-            let stiffness = energy * element.thinness;
-            for e in element.edges {
-                let edge = &mut self.edges[e as usize];
-                edge.urgency = energy;
-                at_edge[e as usize] += BUBBLE_STIFFNESS * stiffness;
-                for v in edge.vertices {
-                    at_vertex[v as usize] += CORNER_STIFFNESS * stiffness;
-                }
-            }
-        }
-        self.metric.clear();
-        self.metric.resize(self.unknowns.len(), 1.0);
-        for (vertex, stiffness) in self.vertices.iter().zip(at_vertex) {
-            match vertex.freedom {
-                Freedom::Fixed => {}
-                Freedom::Free(u) => self.metric[u as usize..u as usize + 2].fill(1.0 / stiffness),
-                Freedom::Slide { unknown, .. } => self.metric[unknown as usize] = 1.0 / stiffness,
-            }
-        }
-        for (edge, stiffness) in self.edges.iter().zip(at_edge) {
-            if let Shape::Interior { unknown } = edge.shape {
-                if unknown != NONE {
-                    let u = unknown as usize;
-                    self.metric[u..u + 2 * self.reference.bubbles].fill(1.0 / stiffness);
-                }
-            }
-        }
     }
 
     /// Limits of the boundary errors. The barrier's own error is of the L2 norm and by few points;
@@ -135,12 +85,8 @@ impl Problem<'_> {
         }
     }
 
-    fn refresh_evenness(&mut self) {
-        for_samples!(self, weigh_elements)
-    }
-
     /// Gives uneven elements more weight on evenness.
-    fn weigh_elements<const K: usize, const H: usize>(&mut self) {
+    pub(super) fn weigh_elements<const K: usize, const H: usize>(&mut self) {
         let mut t = [0.0; K];
         t.copy_from_slice(&self.reference.samples);
         let mut sides = Sides::<K>::ZERO;

@@ -1,6 +1,7 @@
 //! A fresh start for a hopelessly tangled [`Problem`].
 
-use super::problem::{arc_lengths, Freedom, Problem, Shape};
+use super::sampling::arc_lengths;
+use super::{Freedom, Problem, Shape};
 use crate::numerics::{Vector, NONE};
 
 impl Problem<'_> {
@@ -28,10 +29,9 @@ impl Problem<'_> {
         }
         for _ in 0..sweeps {
             let (mut moved, mut size) = (0.0f64, 0.0f64);
-            for v in 0..self.vertices.len() {
+            for (v, near) in neighbours.iter().enumerate() {
                 let Freedom::Free(u) = self.vertices[v].freedom else { continue };
                 let point = |v: &u32| self.vertices[*v as usize].point;
-                let near = &neighbours[v];
                 let mean = near.iter().map(point).sum::<Vector>() / near.len() as f64;
                 let step = (mean - self.vertices[v].point) * OVER;
                 moved = moved.max(step.norm());
