@@ -14,6 +14,10 @@ const UNTANGLED: f64 = 1e-3;
 const FAR: f64 = -0.5;
 /// ... and the share of it by which progress may fall short of what the remaining rounds need.
 const PATIENCE: f64 = 1.3;
+/// Least decrease of the bound by round: elements thin at one end need a far smaller ε than the others.
+const HURRY: f64 = 0.05;
+/// Largest decrease that is forced.
+const MOST_DECREASE: f64 = 0.9;
 /// Step bound of the minimiser, in natural lengths.
 const REACH: f64 = 1.0;
 
@@ -55,7 +59,8 @@ pub(super) fn untangle(
             }
         }
         // The paper's rule: ε so small that the barrier χ stands just below the present least d.
-        let share = (1.0 - minimum.value / before).max(schedule.untangle_decrease);
+        let share = (1.0 - minimum.value / before)
+            .max(schedule.untangle_decrease.max(HURRY * round as f64).min(MOST_DECREASE));
         let chi = 0.5 * (least + (least * least + epsilon * epsilon).sqrt());
         let bound = (1.0 - share) * chi;
         epsilon = if least < bound { 2.0 * (bound * (bound - least)).sqrt() } else { 1e-9 };
