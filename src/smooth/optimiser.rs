@@ -39,6 +39,10 @@ const REACH: f64 = 0.5;
 
 /// Extra rounds for boundary edges that are still above the tolerance.
 const RESCUES: usize = 3;
+/// Share of its energy that a round leaves when the power is worked off.
+const WORKED_OFF: f64 = 0.9;
+/// Weight of the mean scaled Jacobian against the least when rounds are compared.
+const MEAN_WEIGHT: f64 = 0.2;
 /// Sweeps of the relaxation that restarts a hopeless mesh.
 const FLATTEN_SWEEPS: usize = 200;
 
@@ -56,6 +60,8 @@ pub(super) struct Schedule {
     powers: &'static [u32],
     steps: usize,
     progress: f64,
+    /// Most rounds of one power.
+    repeats: usize,
     /// Ways to untangle, in turn until one works; `true`: boundary vertices slide.
     ways: &'static [(Prepare, bool)],
     pub untangle_rounds: usize,
@@ -89,6 +95,7 @@ impl Effort {
                 powers: &[2, 8],
                 steps: 20,
                 progress: 1e-2,
+                repeats: 1,
                 ways: &[(Prepare::Nothing, true)],
                 untangle_rounds: 6,
                 untangle_steps: 25,
@@ -98,6 +105,7 @@ impl Effort {
                 powers: &[2, 4, 8, 8],
                 steps: 60,
                 progress: 1e-4,
+                repeats: 6,
                 // First with the boundary fixed: sliding vertices would rather pile up than let go.
                 ways: &[
                     (Prepare::Nothing, false),
@@ -266,7 +274,7 @@ impl<'a> Optimiser<'a> {
     }
 
     /// Raises the power of the shape energy from a valid state. What comes out keeps the tolerance if
-    /// the start or any round did, and has the best scaled Jacobian among those that do.
+    /// the start or any round did, and has the best quality among those that do.
     fn improve(
         &self,
         problem: &mut Problem,
@@ -274,8 +282,9 @@ impl<'a> Optimiser<'a> {
         schedule: &Schedule,
         evaluations: &mut usize,
     ) {
-        // Better: closer to the tolerance while above it, then the scaled Jacobian.
-        let rank = |p: &Problem| (p.error_ratio.max(1.0), -p.scaled_jacobian);
+        // Better: closer to the tolerance while above it, then the quality.
+        let rank =
+            |p: &Problem| (p.error_ratio.max(1.0), -p.scaled_jacobian - MEAN_WEIGHT * p.mean_scaled_jacobian);
         let mut best = (rank(problem), problem.unknowns.clone());
         let limits = Limits { steps: schedule.steps, progress: schedule.progress };
         let rescue = std::iter::repeat_n(&8, RESCUES);
@@ -283,16 +292,24 @@ impl<'a> Optimiser<'a> {
             if round >= schedule.powers.len() && problem.error_ratio <= 1.0 {
                 break;
             }
-            problem.prepare(Measure::Shape(*power));
-            let mut x = std::mem::take(&mut problem.unknowns);
-            let metric = std::mem::take(&mut problem.metric);
-            *evaluations += lbfgs.minimise(problem, &mut x, &metric, REACH, limits).evaluations;
-            (problem.unknowns, problem.metric) = (x, metric);
-            problem.refresh();
-            let now = rank(problem);
-            if now < best.0 {
-                best.0 = now;
-                best.1.clone_from(&problem.unknowns);
+            // A power is worked off before the next, or its worst elements hide all others.
+            for _ in 0..schedule.repeats {
+                problem.prepare(Measure::Shape(*power));
+                let mut x = std::mem::take(&mut problem.unknowns);
+                let metric = std::mem::take(&mut problem.metric);
+                let before = problem.energy(&x);
+                let minimum = lbfgs.minimise(problem, &mut x, &metric, REACH, limits);
+                *evaluations += minimum.evaluations;
+                (problem.unknowns, problem.metric) = (x, metric);
+                problem.refresh();
+                let now = rank(problem);
+                if now < best.0 {
+                    best.0 = now;
+                    best.1.clone_from(&problem.unknowns);
+                }
+                if minimum.value > WORKED_OFF * before {
+                    break;
+                }
             }
         }
         if best.0 < rank(problem) {

@@ -97,8 +97,9 @@ pub(super) struct Problem<'a> {
     /// Squares of natural lengths of the unknowns.
     pub metric: Vec<f64>,
     pub measure: Measure,
-    /// Least scaled Jacobian at the last refresh.
+    /// Least scaled Jacobian at the last refresh, and the mean of the elements'.
     pub scaled_jacobian: f64,
+    pub mean_scaled_jacobian: f64,
     /// Largest boundary error at the last refresh, divided by the tolerance.
     pub error_ratio: f64,
     /// Least d/A of the last evaluation.

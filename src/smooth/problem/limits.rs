@@ -90,7 +90,8 @@ impl Problem<'_> {
         let mut t = [0.0; K];
         t.copy_from_slice(&self.reference.samples);
         let mut sides = Sides::<K>::ZERO;
-        self.scaled_jacobian = f64::INFINITY;
+        (self.scaled_jacobian, self.mean_scaled_jacobian) = (f64::INFINITY, 0.0);
+        let share = 1.0 / self.elements.len().max(1) as f64;
         for element in &mut self.elements {
             for side in 0..4 {
                 let at = element.edges[side] as usize * 4 * K;
@@ -98,6 +99,7 @@ impl Problem<'_> {
             }
             let Sampled { least, most, scaled } = kernel::jacobians(&t, &sides);
             self.scaled_jacobian = self.scaled_jacobian.min(scaled);
+            self.mean_scaled_jacobian += share * scaled;
             let wanted = EVENNESS * UNEVEN * most / least;
             // Inverted elements have other worries.
             let wanted = if least > 0.0 { wanted } else { EVENNESS };

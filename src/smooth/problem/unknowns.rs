@@ -75,6 +75,7 @@ impl<'a> Problem<'a> {
             metric: Vec::new(),
             measure: Measure::Shape(2),
             scaled_jacobian: 0.0,
+            mean_scaled_jacobian: 0.0,
             error_ratio: 0.0,
             least: 0.0,
         };
