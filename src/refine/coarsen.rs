@@ -39,6 +39,8 @@ struct Coarsening<'a> {
     boundary: &'a Boundary,
     optimiser: &'a Optimiser<'a>,
     limits: Limits,
+    /// Whether all elements keep the limits from the start.
+    holds: bool,
     /// Least number of edges of each chain.
     least: Vec<usize>,
     mesh: QuadMesh,
@@ -91,17 +93,17 @@ pub fn coarsen(
             None => Ok(if chain.ends.is_none() { 3 } else { 1 }),
         })
         .collect::<Result<Vec<_>>>()?;
-    let limits = Limits {
-        // An element that is larger already must be allowed to stay.
-        size: limits.size.max(quality.elements.iter().map(|e| e.size).fold(0.0, f64::max)),
-        ..limits
-    };
+    let largest = quality.elements.iter().map(|e| e.size).fold(0.0, f64::max);
+    let holds = quality.min_scaled_jacobian >= limits.scaled_jacobian
+        && quality.min_jacobian_ratio >= limits.jacobian_ratio
+        && largest <= limits.size;
     let stars = Stars::new(mesh.vertices.len(), &mesh.quads);
     let changed = vec![0; mesh.vertices.len()];
     let mut run = Coarsening {
         boundary,
         optimiser,
         limits,
+        holds,
         least,
         mesh,
         stars,
@@ -174,20 +176,29 @@ impl Coarsening<'_> {
         quads.iter().flat_map(|q| self.mesh.quads[*q as usize]).any(|v| self.changed[v as usize] > time)
     }
 
-    /// Takes a finished change over if it holds; whether it did.
-    fn attempt(&mut self, change: Collapsed) -> bool {
+    /// The limits within some rings around the quads `at`: what is worse there already need not become
+    /// better.
+    fn limits_at(&self, at: &[u32], rings: usize) -> Limits {
+        if self.holds {
+            return self.limits;
+        }
+        let vertices: Vec<u32> = at.iter().flat_map(|q| self.mesh.quads[*q as usize]).collect();
+        let near = self.stars.rings(&self.mesh, &vertices, rings);
+        let now = self.optimiser.quality_of(&self.mesh, Some(&near));
+        Limits {
+            scaled_jacobian: self.limits.scaled_jacobian.min(now.min_scaled_jacobian),
+            jacobian_ratio: self.limits.jacobian_ratio.min(now.min_jacobian_ratio),
+            size: now.elements.iter().map(|e| e.size).fold(self.limits.size, f64::max),
+        }
+    }
+
+    /// Takes a change, made at the quads `at`, over if it holds; whether it did.
+    fn attempt(&mut self, change: Collapsed, at: &[u32]) -> bool {
         let stars = change.stars.clone();
-        // Where the mesh is below a limit already it must only not get worse.
-        let near = self.stars.rings(&self.mesh, &change.touched, 1);
-        let before = self.optimiser.quality_of(&self.mesh, Some(&near));
-        let limits = Limits {
-            scaled_jacobian: self.limits.scaled_jacobian.min(before.min_scaled_jacobian),
-            jacobian_ratio: self.limits.jacobian_ratio.min(before.min_jacobian_ratio),
-            ..self.limits
-        };
-        let Some((mesh, active)) = settle(self.optimiser, change, limits, &mut self.work) else {
-            return false;
-        };
+        let mut work = 0;
+        let settled = settle(self.optimiser, change, &|rings| self.limits_at(at, rings), &mut work);
+        self.work += work;
+        let Some((mesh, active)) = settled else { return false };
         self.time += 1;
         for v in active.iter().flat_map(|q| mesh.quads[*q as usize]) {
             self.changed[v as usize] = self.time;
@@ -246,7 +257,7 @@ impl Coarsening<'_> {
                         continue;
                     }
                 }
-                if self.attempt(change) {
+                if self.attempt(change, &chord.quads) {
                     accepted = true;
                     break;
                 }
@@ -317,7 +328,7 @@ impl Coarsening<'_> {
                 let spare = self.spare();
                 let change = collapse(self.boundary, &self.mesh, &self.stars, &[(key, false)], &[q], &spare);
                 if let Ok(change) = change {
-                    if self.attempt(change) {
+                    if self.attempt(change, &[q]) {
                         accepted = true;
                         continue;
                     }

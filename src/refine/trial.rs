@@ -27,18 +27,19 @@ impl Limits {
 /// Rings of quads around a change that are re-optimised, and the effort, in turn until one will do.
 const ATTEMPTS: [(usize, Effort); 3] = [(1, Effort::Quick), (3, Effort::Quick), (3, Effort::Full)];
 
-/// Scaled Jacobian after the first attempt below which a wider one has not been seen to help.
-const HOPELESS: f64 = -0.5;
+/// A least Jacobian (over the element's area) after the first attempt from which a wider one has not been seen
+/// to help.
+const HOPELESS: f64 = -0.4;
 /// Share of the floor from which full effort may still reach it.
 const NEARLY: f64 = 0.8;
 
 /// Completes a merge: boundary vertices re-spaced, the surroundings optimised. The mesh, and the
-/// quads that were optimised, if `limits` hold for them; a second attempt costs more work. Adds the
+/// quads that were optimised, if the limits within so many rings hold for them; a second attempt costs more work. Adds the
 /// element evaluations spent to `work`.
 pub(super) fn settle(
     optimiser: &Optimiser,
     mut change: Collapsed,
-    limits: Limits,
+    limits_at: &dyn Fn(usize) -> Limits,
     work: &mut u64,
 ) -> Option<(QuadMesh, Vec<u32>)> {
     let mesh = &mut change.mesh;
@@ -59,6 +60,7 @@ pub(super) fn settle(
     }
     for (rings, effort) in ATTEMPTS {
         let active = change.stars.rings(mesh, &seeds, rings);
+        let limits = limits_at(rings + 1);
         let outcome = optimiser.optimise(mesh, Some(&active), effort);
         *work += (outcome.evaluations * active.len()) as u64;
         let quality = optimiser.quality_of(mesh, Some(&active));
@@ -70,11 +72,8 @@ pub(super) fn settle(
         }
         // More work lifts the scaled Jacobian, not the rest; and what is far off will not come back.
         let far_off = quality.min_scaled_jacobian < NEARLY * limits.scaled_jacobian;
-        let hopeless = if rings == 1 {
-            quality.min_scaled_jacobian < HOPELESS
-        } else {
-            !outcome.valid || !others || far_off
-        };
+        let hopeless =
+            if rings == 1 { outcome.least_jacobian < HOPELESS } else { !outcome.valid || !others || far_off };
         if hopeless {
             return None;
         }

@@ -6,6 +6,7 @@
 
 use super::optimiser::{Optimiser, Schedule};
 use super::problem::Problem;
+use super::reference::Reference;
 use super::untangle::untangle;
 use crate::mesh::QuadMesh;
 
@@ -17,6 +18,7 @@ const MOST: f64 = 0.7;
 /// Untangles around inverted elements; a try that leaves more of them is forgotten.
 pub(super) fn untangle_locally(
     optimiser: &Optimiser,
+    reference: &Reference,
     mesh: &mut QuadMesh,
     schedule: &Schedule,
     evaluations: &mut usize,
@@ -35,9 +37,8 @@ pub(super) fn untangle_locally(
             return;
         }
         let before = mesh.clone();
-        let mut problem = optimiser.problem(mesh, Some(&active), false);
-        let (rounds, steps) = (schedule.untangle_rounds, schedule.untangle_steps);
-        untangle(&mut problem, &mut Default::default(), rounds, steps, evaluations);
+        let mut problem = optimiser.problem(reference, mesh, Some(&active), false);
+        untangle(&mut problem, &mut Default::default(), schedule, evaluations);
         Problem::store(&problem, mesh);
         let left = inverted_quads(optimiser, mesh);
         if left.len() > inverted.len() {

@@ -39,15 +39,35 @@ const REACH: f64 = 0.5;
 
 /// Extra rounds for boundary edges that are still above the tolerance.
 const RESCUES: usize = 3;
+/// Share of its energy that a round leaves when the power is worked off.
+const WORKED_OFF: f64 = 0.9;
+/// Weight of the mean scaled Jacobian against the least when rounds are compared.
+const MEAN_WEIGHT: f64 = 0.2;
 /// Sweeps of the relaxation that restarts a hopeless mesh.
 const FLATTEN_SWEEPS: usize = 200;
+
+/// What is done to an inverted mesh before it is untangled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Prepare {
+    Nothing,
+    /// Straight edges, vertices at the means of their neighbours.
+    Flatten,
+    /// The same with boundary vertices spread along their chains.
+    Spread,
+}
 
 pub(super) struct Schedule {
     powers: &'static [u32],
     steps: usize,
     progress: f64,
+    /// Most rounds of one power.
+    repeats: usize,
+    /// Ways to untangle, in turn until one works; `true`: boundary vertices slide.
+    ways: &'static [(Prepare, bool)],
     pub untangle_rounds: usize,
     pub untangle_steps: usize,
+    /// Least share by which untangling lowers its bound in a round: less is surer, more is faster.
+    pub untangle_decrease: f64,
 }
 
 /// Quads up to which an optimisation may take all its steps; on larger meshes steps are fewer, so that
@@ -75,17 +95,45 @@ impl Effort {
                 powers: &[2, 8],
                 steps: 20,
                 progress: 1e-2,
+                repeats: 1,
+                ways: &[(Prepare::Nothing, true)],
                 untangle_rounds: 6,
                 untangle_steps: 25,
+                untangle_decrease: 0.5,
             },
             Effort::Full => Schedule {
                 powers: &[2, 4, 8, 8],
                 steps: 60,
                 progress: 1e-4,
+                repeats: 6,
+                // First with the boundary fixed: sliding vertices would rather pile up than let go.
+                ways: &[
+                    (Prepare::Nothing, false),
+                    (Prepare::Nothing, true),
+                    (Prepare::Flatten, false),
+                    (Prepare::Nothing, true),
+                    (Prepare::Spread, false),
+                    (Prepare::Nothing, true),
+                ],
                 untangle_rounds: 20,
                 untangle_steps: 50,
+                untangle_decrease: 0.1,
             },
         }
+    }
+}
+
+/// Where an optimisation arrived, as its own samples see it.
+#[derive(Debug, Clone, Copy)]
+struct State {
+    valid: bool,
+    least_jacobian: f64,
+    error_ratio: f64,
+}
+
+impl State {
+    fn of(problem: &mut Problem, valid: bool) -> Self {
+        State { valid, least_jacobian: problem.least_jacobian(), error_ratio: problem.error_ratio }
     }
 }
 
@@ -95,6 +143,7 @@ pub struct Optimiser<'a> {
     boundary: &'a Boundary,
     error: Option<BoundaryError>,
     energy: Reference,
+    dense: Reference,
     measuring: Reference,
 }
 
@@ -107,6 +156,7 @@ impl<'a> Optimiser<'a> {
             boundary,
             error: tolerance.map(BoundaryError::new),
             energy: Reference::for_energy(order),
+            dense: Reference::for_dense_energy(order),
             measuring: Reference::for_quality(order),
         }
     }
@@ -135,62 +185,96 @@ impl<'a> Optimiser<'a> {
     /// a quad outside shares them. Once all samples are positive they stay so. If nothing valid is
     /// found the mesh is left at the last try.
     pub fn optimise(&self, mesh: &mut QuadMesh, active: Option<&[u32]>, effort: Effort) -> Outcome {
-        let schedule = effort.schedule_for(active.map_or(mesh.quads.len(), <[u32]>::len));
-        let mut lbfgs = Lbfgs::default();
+        let start = self.problem(&self.energy, mesh, active, true).unknowns;
+        let held = self.quality_of(mesh, active).valid();
         let mut evaluations = 0;
-        let new = |mesh: &QuadMesh, slide| self.problem(mesh, active, slide);
-        let mut problem = new(mesh, true);
-        let mut valid = problem.least_jacobian() > 0.0;
-        if !valid && active.is_none() {
-            untangle_locally(self, mesh, &schedule, &mut evaluations);
-            problem = new(mesh, true);
-            valid = problem.least_jacobian() > 0.0;
+        let mut state = self.run(&self.energy, mesh, active, effort, &mut evaluations);
+        let mut quality = self.quality_of(mesh, active);
+        if state.valid && !quality.valid() {
+            // Inverted between the samples: denser ones.
+            state = self.run(&self.dense, mesh, active, effort, &mut evaluations);
+            quality = self.quality_of(mesh, active);
         }
-        if !valid {
-            // First with the boundary fixed: sliding vertices would rather pile up than let go. If
-            // both fail, the start was worthless: the same from straight edges and mean positions.
-            let ways: &[(bool, bool)] = match effort {
-                Effort::Quick => &[(true, false)],
-                Effort::Full => &[(false, false), (true, false), (false, true), (true, false)],
-            };
-            for (slide, flatten) in ways.iter().copied() {
-                problem = new(mesh, slide);
-                if flatten {
-                    problem.flatten(FLATTEN_SWEEPS);
-                }
-                let (rounds, steps) = (schedule.untangle_rounds, schedule.untangle_steps);
-                valid = untangle(&mut problem, &mut lbfgs, rounds, steps, &mut evaluations);
-                problem.store(mesh);
-                if valid {
-                    break;
-                }
-            }
-            problem = new(mesh, true);
-            valid = problem.least_jacobian() > 0.0;
+        if held && !quality.valid() {
+            let mut problem = self.problem(&self.energy, mesh, active, true);
+            problem.unknowns = start;
+            problem.refresh();
+            state = State::of(&mut problem, true);
+            problem.store(mesh);
+            quality = self.quality_of(mesh, active);
         }
-        if valid {
-            self.improve(&mut problem, &mut lbfgs, &schedule, &mut evaluations);
-        }
-        let error_ratio = problem.error_ratio;
-        let least_jacobian = problem.least_jacobian();
-        problem.store(mesh);
-        let quality = self.quality_of(mesh, active);
         Outcome {
-            valid: valid && quality.valid(),
-            least_jacobian,
+            valid: quality.valid(),
+            least_jacobian: state.least_jacobian,
             min_scaled_jacobian: quality.min_scaled_jacobian,
-            error_ratio,
+            error_ratio: state.error_ratio,
             evaluations,
         }
     }
 
     /// `mesh` as a function of what may move.
-    pub(super) fn problem(&self, mesh: &QuadMesh, active: Option<&[u32]>, slide: bool) -> Problem<'_> {
-        Problem::new(self.boundary, &self.energy, self.error.as_ref(), mesh, active, slide)
+    pub(super) fn problem<'b>(
+        &'b self,
+        reference: &'b Reference,
+        mesh: &QuadMesh,
+        active: Option<&[u32]>,
+        slide: bool,
+    ) -> Problem<'b> {
+        Problem::new(self.boundary, reference, self.error.as_ref(), mesh, active, slide)
+    }
+
+    /// Untangles if need be, then improves.
+    fn run(
+        &self,
+        reference: &Reference,
+        mesh: &mut QuadMesh,
+        active: Option<&[u32]>,
+        effort: Effort,
+        evaluations: &mut usize,
+    ) -> State {
+        let schedule = effort.schedule_for(active.map_or(mesh.quads.len(), <[u32]>::len));
+        let mut lbfgs = Lbfgs::default();
+        let mut problem = self.problem(reference, mesh, active, true);
+        let mut valid = problem.least_jacobian() > 0.0;
+        if !valid && active.is_none() {
+            untangle_locally(self, reference, mesh, &schedule, evaluations);
+            problem = self.problem(reference, mesh, active, true);
+            valid = problem.least_jacobian() > 0.0;
+        }
+        if !valid {
+            for (prepare, slide) in schedule.ways.iter().copied() {
+                // Boundary vertices are only prepared where they can slide.
+                problem = self.problem(reference, mesh, active, slide || prepare == Prepare::Spread);
+                match prepare {
+                    Prepare::Nothing => {}
+                    Prepare::Flatten => problem.flatten(FLATTEN_SWEEPS),
+                    Prepare::Spread => {
+                        problem.spread();
+                        problem.flatten(FLATTEN_SWEEPS);
+                        if !slide {
+                            problem.store(mesh);
+                            problem = self.problem(reference, mesh, active, false);
+                        }
+                    }
+                }
+                valid = untangle(&mut problem, &mut lbfgs, &schedule, evaluations);
+                problem.store(mesh);
+                if valid {
+                    break;
+                }
+            }
+            problem = self.problem(reference, mesh, active, true);
+            valid = problem.least_jacobian() > 0.0;
+        }
+        if valid {
+            self.improve(&mut problem, &mut lbfgs, &schedule, evaluations);
+        }
+        problem.store(mesh);
+        State::of(&mut problem, valid)
     }
 
     /// Raises the power of the shape energy from a valid state. What comes out keeps the tolerance if
-    /// the start or any round did, and has the best scaled Jacobian among those that do.
+    /// the start or any round did, and has the best quality among those that do.
     fn improve(
         &self,
         problem: &mut Problem,
@@ -198,8 +282,9 @@ impl<'a> Optimiser<'a> {
         schedule: &Schedule,
         evaluations: &mut usize,
     ) {
-        // Better: closer to the tolerance while above it, then the scaled Jacobian.
-        let rank = |p: &Problem| (p.error_ratio.max(1.0), -p.scaled_jacobian);
+        // Better: closer to the tolerance while above it, then the quality.
+        let rank =
+            |p: &Problem| (p.error_ratio.max(1.0), -p.scaled_jacobian - MEAN_WEIGHT * p.mean_scaled_jacobian);
         let mut best = (rank(problem), problem.unknowns.clone());
         let limits = Limits { steps: schedule.steps, progress: schedule.progress };
         let rescue = std::iter::repeat_n(&8, RESCUES);
@@ -207,16 +292,24 @@ impl<'a> Optimiser<'a> {
             if round >= schedule.powers.len() && problem.error_ratio <= 1.0 {
                 break;
             }
-            problem.measure = Measure::Shape(*power);
-            let mut x = std::mem::take(&mut problem.unknowns);
-            let metric = std::mem::take(&mut problem.metric);
-            *evaluations += lbfgs.minimise(problem, &mut x, &metric, REACH, limits).evaluations;
-            (problem.unknowns, problem.metric) = (x, metric);
-            problem.refresh();
-            let now = rank(problem);
-            if now < best.0 {
-                best.0 = now;
-                best.1.clone_from(&problem.unknowns);
+            // A power is worked off before the next, or its worst elements hide all others.
+            for _ in 0..schedule.repeats {
+                problem.prepare(Measure::Shape(*power));
+                let mut x = std::mem::take(&mut problem.unknowns);
+                let metric = std::mem::take(&mut problem.metric);
+                let before = problem.energy(&x);
+                let minimum = lbfgs.minimise(problem, &mut x, &metric, REACH, limits);
+                *evaluations += minimum.evaluations;
+                (problem.unknowns, problem.metric) = (x, metric);
+                problem.refresh();
+                let now = rank(problem);
+                if now < best.0 {
+                    best.0 = now;
+                    best.1.clone_from(&problem.unknowns);
+                }
+                if minimum.value > WORKED_OFF * before {
+                    break;
+                }
             }
         }
         if best.0 < rank(problem) {

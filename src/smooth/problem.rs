@@ -3,6 +3,8 @@
 
 mod gather;
 mod limits;
+mod metric;
+mod restart;
 mod sampling;
 mod unknowns;
 
@@ -61,6 +63,8 @@ struct LocalEdge {
     vertices: [u32; 2],
     shape: Shape,
     moves: bool,
+    /// Energy of the element beside, at least 1: what the barriers of a boundary edge have to match.
+    urgency: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -69,6 +73,10 @@ struct LocalElement {
     edges: [u32; 4],
     flips: [bool; 4],
     target: Target,
+    /// 1/ℓ₁² + 1/ℓ₂².
+    thinness: f64,
+    /// p times the energy at the last evaluation.
+    energy: f64,
 }
 
 /// See the module. Arrays are filled once; evaluation allocates nothing.
@@ -89,8 +97,9 @@ pub(super) struct Problem<'a> {
     /// Squares of natural lengths of the unknowns.
     pub metric: Vec<f64>,
     pub measure: Measure,
-    /// Least scaled Jacobian at the last refresh.
+    /// Least scaled Jacobian at the last refresh, and the mean of the elements'.
     pub scaled_jacobian: f64,
+    pub mean_scaled_jacobian: f64,
     /// Largest boundary error at the last refresh, divided by the tolerance.
     pub error_ratio: f64,
     /// Least d/A of the last evaluation.
@@ -116,44 +125,6 @@ macro_rules! for_samples {
 }
 
 impl<'a> Problem<'a> {
-    /// Forgets the shape: free edges straight, free vertices at the means of their neighbours
-    /// (Gauss-Seidel with over-relaxation, at most `sweeps` sweeps).
-    pub fn flatten(&mut self, sweeps: usize) {
-        const OVER: f64 = 1.6;
-        const STILL: f64 = 1e-3;
-        let mut neighbours = vec![Vec::new(); self.vertices.len()];
-        let mut x = std::mem::take(&mut self.unknowns);
-        for edge in &self.edges {
-            let [a, b] = edge.vertices;
-            neighbours[a as usize].push(b);
-            neighbours[b as usize].push(a);
-            if let Shape::Interior { unknown } = edge.shape {
-                if unknown != NONE {
-                    x[unknown as usize..unknown as usize + 2 * self.reference.bubbles].fill(0.0);
-                }
-            }
-        }
-        for _ in 0..sweeps {
-            let (mut moved, mut size) = (0.0f64, 0.0f64);
-            for (v, near) in neighbours.iter().enumerate() {
-                let Freedom::Free(u) = self.vertices[v].freedom else { continue };
-                let point = |v: &u32| self.vertices[*v as usize].point;
-                let mean = near.iter().map(point).sum::<Vector>() / near.len() as f64;
-                let step = (mean - self.vertices[v].point) * OVER;
-                moved = moved.max(step.norm());
-                size = size.max((point(&near[0]) - mean).norm());
-                self.vertices[v].point += step;
-                let p = self.vertices[v].point;
-                (x[u as usize], x[u as usize + 1]) = (p.x, p.y);
-            }
-            if moved <= STILL * size {
-                break;
-            }
-        }
-        self.unknowns = x;
-        self.refresh();
-    }
-
     /// The value at `x`, alone.
     pub fn energy(&mut self, x: &[f64]) -> f64 {
         let mut gradient = vec![0.0; x.len()];
@@ -221,7 +192,8 @@ impl<'a> Problem<'a> {
         t.copy_from_slice(&self.reference.samples);
         let (mut sides, mut gradient) = (Sides::<K>::ZERO, Sides::<K>::ZERO);
         let (mut sum, mut least) = (0.0, f64::INFINITY);
-        for element in &self.elements {
+        let power = if let Measure::Shape(p) = self.measure { p as f64 } else { 1.0 };
+        for element in &mut self.elements {
             for side in 0..4 {
                 let at = element.edges[side] as usize * 4 * K;
                 sides.read(side, &self.samples[at..at + 4 * K], element.flips[side]);
@@ -230,6 +202,7 @@ impl<'a> Problem<'a> {
                 None => return f64::INFINITY,
                 Some((energy, jacobian)) => {
                     sum += energy;
+                    element.energy = power * energy;
                     least = least.min(jacobian);
                 }
             }
@@ -332,7 +305,7 @@ mod tests {
         let measures =
             [1, 2, 4, 8].map(Measure::Shape).into_iter().chain([Measure::Regularised { epsilon: 0.4 }]);
         for measure in measures {
-            problem.measure = measure;
+            problem.prepare(measure);
             assert!(problem.evaluate(&x, &mut gradient).is_finite());
             for i in 0..x.len() {
                 let step = 1e-6 * problem.metric[i].sqrt();

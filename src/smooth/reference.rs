@@ -88,6 +88,11 @@ impl Reference {
         Reference::new(order, (order + 2).clamp(3, MAX_SAMPLES))
     }
 
+    /// The same with more samples, for elements that are inverted between the usual ones.
+    pub fn for_dense_energy(order: usize) -> Self {
+        Reference::new(order, (2 * order + 1).clamp(4, MAX_SAMPLES))
+    }
+
     /// Tables for measuring quality, about twice as dense.
     pub fn for_quality(order: usize) -> Self {
         Reference::new(order, (2 * order + 3).clamp(5, 2 * MAX_SAMPLES + 1))

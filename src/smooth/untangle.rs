@@ -5,6 +5,7 @@
 
 use super::kernel::Measure;
 use super::minimiser::{Lbfgs, Limits};
+use super::optimiser::Schedule;
 use super::problem::Problem;
 
 /// Least d/A at which a mesh counts as untangled: the shape energy takes over there.
@@ -13,20 +14,22 @@ const UNTANGLED: f64 = 1e-3;
 const FAR: f64 = -0.5;
 /// ... and the share of it by which progress may fall short of what the remaining rounds need.
 const PATIENCE: f64 = 1.3;
-/// Least share by which ε's bound shrinks in a round.
-const LEAST_DECREASE: f64 = 0.1;
+/// Least decrease of the bound by round: elements thin at one end need a far smaller ε than the others.
+const HURRY: f64 = 0.05;
+/// Largest decrease that is forced.
+const MOST_DECREASE: f64 = 0.9;
 /// Step bound of the minimiser, in natural lengths.
 const REACH: f64 = 1.0;
 
-/// At most `rounds` rounds of `steps` steps; `true` when no sample is inverted any more. Adds to
+/// As many rounds and steps as the schedule allows; `true` when no sample is inverted any more. Adds to
 /// `evaluations`.
 pub(super) fn untangle(
     problem: &mut Problem,
     lbfgs: &mut Lbfgs,
-    rounds: usize,
-    steps: usize,
+    schedule: &Schedule,
     evaluations: &mut usize,
 ) -> bool {
+    let (rounds, steps) = (schedule.untangle_rounds, schedule.untangle_steps);
     let mut least = problem.least_jacobian();
     let mut epsilon = 1.0f64;
     let mut first = least;
@@ -34,7 +37,7 @@ pub(super) fn untangle(
         if least > UNTANGLED {
             break;
         }
-        problem.measure = Measure::Regularised { epsilon };
+        problem.prepare(Measure::Regularised { epsilon });
         let mut x = std::mem::take(&mut problem.unknowns);
         let metric = std::mem::take(&mut problem.metric);
         let before = problem.energy(&x);
@@ -56,7 +59,8 @@ pub(super) fn untangle(
             }
         }
         // The paper's rule: ε so small that the barrier χ stands just below the present least d.
-        let share = (1.0 - minimum.value / before).max(LEAST_DECREASE);
+        let share = (1.0 - minimum.value / before)
+            .max(schedule.untangle_decrease.max(HURRY * round as f64).min(MOST_DECREASE));
         let chi = 0.5 * (least + (least * least + epsilon * epsilon).sqrt());
         let bound = (1.0 - share) * chi;
         epsilon = if least < bound { 2.0 * (bound * (bound - least)).sqrt() } else { 1e-9 };

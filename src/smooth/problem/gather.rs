@@ -59,15 +59,17 @@ impl Problem<'_> {
                         ends[1] += along * self.reference.nodes[i];
                     }
                     let now = end - start;
-                    extra -= LENGTH_WEIGHT * (now / length).ln();
-                    ends[0] += LENGTH_WEIGHT / now;
-                    ends[1] -= LENGTH_WEIGHT / now;
+                    let length_weight = LENGTH_WEIGHT * edge.urgency;
+                    extra -= length_weight * (now / length).ln();
+                    ends[0] += length_weight / now;
+                    ends[1] -= length_weight / now;
                     if self.tolerance.is_some() {
                         let chain = &self.boundary.chains[chain as usize];
                         let e2 = squared_error(self.reference, chain, start, now, own);
                         let Some((b, slope)) = barrier(self.reference.order, e2.value, limit) else {
                             return f64::INFINITY;
                         };
+                        let weight = weight * edge.urgency;
                         extra += weight * b;
                         for (end, e2) in ends.iter_mut().zip(e2.slope) {
                             *end += weight * slope * e2;

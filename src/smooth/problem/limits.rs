@@ -1,8 +1,7 @@
-//! What stays constant during a minimisation: aspect ratios, natural lengths, error limits.
+//! What stays constant during a minimisation: aspect ratios, weights, error limits.
 
 use super::sampling::arc_lengths;
-use super::{Freedom, LocalElement, Problem, Shape, EVENNESS};
-use crate::numerics::NONE;
+use super::{LocalElement, Problem, Shape, EVENNESS};
 use crate::smooth::edge_error::squared_error;
 use crate::smooth::kernel::{self, Sampled, Sides, Target};
 
@@ -31,56 +30,23 @@ impl Problem<'_> {
         self.samples.chunks_exact(4 * k).map(length).collect()
     }
 
-    /// Takes aspect ratios, natural lengths and error limits from the present state: they stay
+    /// Takes aspect ratios, weights and error limits from the present state: they stay
     /// constant during a minimisation.
     pub fn refresh(&mut self) {
         let x = std::mem::take(&mut self.unknowns);
         self.sample(&x, false, None);
         self.unknowns = x;
         let lengths = self.lengths();
-        let mut widths = vec![0.0; self.edges.len()]; // Σ 1/width² of the elements beside
-        let mut floor = vec![0.0f64; self.elements.len()];
-        for (element, floor) in self.elements.iter_mut().zip(&mut floor) {
+        for element in &mut self.elements {
             let l = element.edges.map(|e| lengths[e as usize]);
             // Edges without length must not make a target of no size.
-            *floor = 1e-3 * l.iter().fold(0.0, |a: f64, b| a.max(*b)) + f64::MIN_POSITIVE;
-            let (l1, l2) = ((0.5 * (l[0] + l[2])).max(*floor), (0.5 * (l[1] + l[3])).max(*floor));
+            let floor = 1e-3 * l.iter().fold(0.0, |a: f64, b| a.max(*b)) + f64::MIN_POSITIVE;
+            let (l1, l2) = ((0.5 * (l[0] + l[2])).max(floor), (0.5 * (l[1] + l[3])).max(floor));
             let area = area(element, &self.samples, self.reference.samples.len());
             // Inverted elements have no area worth keeping.
             let area = if area > 0.2 * l1 * l2 { area } else { l1 * l2 };
             element.target = Target { ratio: tame(l2 / l1), area, evenness: EVENNESS };
-            for (i, e) in element.edges.iter().enumerate() {
-                let width = if i % 2 == 0 { l2 } else { l1 };
-                widths[*e as usize] += 1.0 / (width * width);
-            }
-        }
-        // Natural lengths: harmonic means of the squares, so that the shortest neighbour rules.
-        let mut at_vertex = vec![[0.0; 2]; self.vertices.len()];
-        for (e, edge) in self.edges.iter().enumerate() {
-            let inverse = 1.0 / (lengths[e] * lengths[e]).max(f64::MIN_POSITIVE);
-            for v in edge.vertices {
-                let [sum, count] = &mut at_vertex[v as usize];
-                *sum += inverse;
-                *count += 1.0;
-            }
-        }
-        self.metric.clear();
-        self.metric.resize(self.unknowns.len(), 1.0);
-        for (vertex, [sum, count]) in self.vertices.iter().zip(at_vertex) {
-            match vertex.freedom {
-                Freedom::Fixed => {}
-                Freedom::Free(u) => self.metric[u as usize..u as usize + 2].fill(count / sum),
-                Freedom::Slide { unknown, .. } => self.metric[unknown as usize] = count / sum,
-            }
-        }
-        for (e, edge) in self.edges.iter().enumerate() {
-            if let Shape::Interior { unknown } = edge.shape {
-                if unknown != NONE {
-                    let own = 1.0 / (lengths[e] * lengths[e]).max(f64::MIN_POSITIVE);
-                    let u = unknown as usize;
-                    self.metric[u..u + 2 * self.reference.bubbles].fill(0.5 / (own + widths[e]));
-                }
-            }
+            element.thinness = 1.0 / (l1 * l1) + 1.0 / (l2 * l2);
         }
         self.refresh_evenness();
         self.refresh_limits();
@@ -124,7 +90,8 @@ impl Problem<'_> {
         let mut t = [0.0; K];
         t.copy_from_slice(&self.reference.samples);
         let mut sides = Sides::<K>::ZERO;
-        self.scaled_jacobian = f64::INFINITY;
+        (self.scaled_jacobian, self.mean_scaled_jacobian) = (f64::INFINITY, 0.0);
+        let share = 1.0 / self.elements.len().max(1) as f64;
         for element in &mut self.elements {
             for side in 0..4 {
                 let at = element.edges[side] as usize * 4 * K;
@@ -132,6 +99,7 @@ impl Problem<'_> {
             }
             let Sampled { least, most, scaled } = kernel::jacobians(&t, &sides);
             self.scaled_jacobian = self.scaled_jacobian.min(scaled);
+            self.mean_scaled_jacobian += share * scaled;
             let wanted = EVENNESS * UNEVEN * most / least;
             // Inverted elements have other worries.
             let wanted = if least > 0.0 { wanted } else { EVENNESS };

@@ -58,7 +58,7 @@ impl<'a> Problem<'a> {
                     v
                 });
                 let shape = Shape::Interior { unknown: if rim { NONE } else { 0 } };
-                edges.push(LocalEdge { global: e, vertices: ends, shape, moves: false });
+                edges.push(LocalEdge { global: e, vertices: ends, shape, moves: false, urgency: 1.0 });
             }
         }
         let mut problem = Problem {
@@ -75,6 +75,7 @@ impl<'a> Problem<'a> {
             metric: Vec::new(),
             measure: Measure::Shape(2),
             scaled_jacobian: 0.0,
+            mean_scaled_jacobian: 0.0,
             error_ratio: 0.0,
             least: 0.0,
         };
@@ -88,11 +89,8 @@ impl<'a> Problem<'a> {
             }
             let starts = [quad[0], quad[1], quad[3], quad[0]];
             let flips = [0, 1, 2, 3].map(|i| mesh.edges[global[i] as usize].vertices[0] != starts[i]);
-            problem.elements.push(LocalElement {
-                edges,
-                flips,
-                target: Target { ratio: 1.0, area: 1.0, evenness: EVENNESS },
-            });
+            let target = Target { ratio: 1.0, area: 1.0, evenness: EVENNESS };
+            problem.elements.push(LocalElement { edges, flips, target, thinness: 1.0, energy: 1.0 });
         }
         let k4 = 4 * reference.samples.len();
         problem.samples = vec![0.0; problem.edges.len() * k4];
