@@ -64,8 +64,9 @@ pub struct Options {
     pub max_element_size: Option<f64>,
     /// Wanted size of the base triangles, in the caller's unit; `None`: automatic.
     pub base_mesh_size: Option<f64>,
-    /// Scaled Jacobian, in (0, 1), that coarsening does not take elements below; where the mesh is below it
-    /// already, coarsening does not make it worse.
+    /// Share, in (0, 1), of the domain's best possible scaled Jacobian ([`crate::mesh::scaled_jacobian_ceiling`])
+    /// that coarsening does not take elements below; where the mesh is below it already, coarsening does not
+    /// make it worse.
     pub quality_floor: f64,
     /// Most elements allowed.
     pub max_elements: usize,
@@ -83,7 +84,7 @@ impl Default for Options {
             subdivision: Subdivision::EqualError,
             max_element_size: None,
             base_mesh_size: None,
-            quality_floor: 0.45,
+            quality_floor: 0.8,
             max_elements: 1_000_000,
             progress: Progress::default(),
         }

@@ -5,7 +5,7 @@ use crate::base_mesh::ElementSize;
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
 use crate::layout::QuadLayout;
-use crate::mesh::{BoundaryError, BoundaryTolerance, QuadMesh, Vertex};
+use crate::mesh::{scaled_jacobian_ceiling, BoundaryError, BoundaryTolerance, QuadMesh, Vertex};
 use crate::options::{Options, Subdivision};
 use crate::progress::Stage;
 use crate::refine::{self, Limits};
@@ -91,7 +91,8 @@ pub(super) fn refine_and_smooth(
     }
     if options.subdivision == Subdivision::EqualError && watch.work <= MOST_WORK {
         let size = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
-        let limits = Limits { size, ..Limits::new(options.quality_floor) };
+        let floor = options.quality_floor * scaled_jacobian_ceiling(boundary);
+        let limits = Limits { size, ..Limits::new(floor) };
         let progress = watch.coarsening();
         mesh = watch
             .run(stages, Stage::Refine, |_| refine::coarsen(mesh, boundary, &optimiser, limits, &progress))?;

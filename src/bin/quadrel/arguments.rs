@@ -44,7 +44,7 @@ pub struct MeshArguments {
     /// Wanted element size as an expression; this version takes a constant only
     #[arg(long, value_name = "EXPR", conflicts_with = "max_size", allow_hyphen_values = true)]
     pub size: Option<String>,
-    /// Scaled Jacobian that coarsening does not take elements below
+    /// Share of the best possible scaled Jacobian that coarsening does not take elements below
     #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     pub quality_floor: Option<f64>,
     /// Cross field: diffused keeps singularities apart, harmonic is the paper's
