@@ -16,7 +16,7 @@ use std::collections::HashMap;
 /// Most rounds of subdivision and smoothing.
 const ROUNDS: usize = 5;
 /// Element evaluations (some microseconds each at order 5) after which no further round or attempt begins.
-pub(super) const MOST_WORK: usize = 6_000_000;
+pub(super) const MOST_WORK: u64 = 6_000_000;
 /// Edge lengths in wanted sizes above which a chord is divided.
 const TOO_LONG: f64 = 2.5;
 /// Most elements, as a multiple of the first round's, before another layout is tried.
@@ -55,7 +55,7 @@ pub(super) fn refine_and_smooth(
         }
         let outcome =
             watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut mesh, None, Effort::Full)))?;
-        watch.work += outcome.evaluations * mesh.quads.len();
+        watch.work += outcome.work;
         note(stages, &optimiser, &mesh, "smooth");
         // Step 9: again where it does not hold yet. Divided edges keep their shape, so what is valid stays so.
         let quality = optimiser.quality(&mesh);

@@ -25,7 +25,7 @@ pub(super) struct Watch {
     /// Progress never goes back, also when stages run again.
     reached: Arc<Mutex<f64>>,
     /// Element evaluations spent on smoothing.
-    pub work: usize,
+    pub work: u64,
 }
 
 impl Watch {

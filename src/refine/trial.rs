@@ -62,7 +62,7 @@ pub(super) fn settle(
         let active = change.stars.rings(mesh, &seeds, rings);
         let limits = limits_at(rings + 1);
         let outcome = optimiser.optimise(mesh, Some(&active), effort);
-        *work += (outcome.evaluations * active.len()) as u64;
+        *work += outcome.work;
         let quality = optimiser.quality_of(mesh, Some(&active));
         let others = quality.min_jacobian_ratio >= limits.jacobian_ratio
             && quality.error_ratio <= 1.0

@@ -2,56 +2,98 @@
 //!
 //! The regularised energy first makes everything round and only then barrier-like; on a mesh that
 //! is right but for a few elements that costs more than it mends. So the inverted elements and some rings
-//! around them are untangled by themselves, the boundary fixed, with more rings in turn.
+//! around them are untangled by themselves, what lies around them fixed, with more rings in turn. Parts that do
+//! not touch are problems of their own: each takes the steps that it needs and no more.
 
-use super::optimiser::{Optimiser, Schedule};
+use super::optimiser::{Effort, MOST_WORK};
 use super::problem::Problem;
-use super::reference::Reference;
 use super::untangle::untangle;
-use crate::mesh::QuadMesh;
+use crate::mesh::{Edge, QuadMesh, Vertex};
+use crate::numerics::NONE;
 
 /// Rings of quads around inverted ones, in turn.
-const RINGS: [usize; 4] = [1, 2, 4, 7];
+const RINGS: [usize; 5] = [1, 2, 4, 7, 12];
 /// Share of the mesh above which the whole of it may as well be untangled.
 const MOST: f64 = 0.7;
 
-/// Untangles around inverted elements; a try that leaves more of them is forgotten.
+/// The elements that are untangled: curved or straight-sided.
+pub(super) trait Elements {
+    /// The quads `active` as a function of what may move.
+    fn problem<'a>(&'a self, mesh: &QuadMesh, active: &[u32]) -> Problem<'a>;
+    /// Whether a quad is inverted.
+    fn inverted(&self, mesh: &QuadMesh, quad: u32) -> bool;
+}
+
+/// Untangles around inverted elements; a try that leaves more of them is forgotten. The number of inverted
+/// elements left, or more if the work ran out.
 pub(super) fn untangle_locally(
-    optimiser: &Optimiser,
-    reference: &Reference,
+    elements: &impl Elements,
     mesh: &mut QuadMesh,
-    schedule: &Schedule,
-    evaluations: &mut usize,
-) {
+    effort: Effort,
+    work: &mut u64,
+) -> usize {
     let mut around = vec![Vec::new(); mesh.vertices.len()];
     for (q, quad) in mesh.quads.iter().enumerate() {
         quad.iter().for_each(|v| around[*v as usize].push(q as u32));
     }
-    let mut inverted = inverted_quads(optimiser, mesh);
+    let all: Vec<u32> = (0..mesh.quads.len() as u32).collect();
+    let mut inverted = among(elements, mesh, &all);
     for rings in RINGS {
         if inverted.is_empty() {
-            return;
+            break;
         }
         let active = grow(mesh, &around, &inverted, rings);
         if active.len() as f64 > MOST * mesh.quads.len() as f64 {
-            return;
+            break;
         }
-        let before = mesh.clone();
-        let mut problem = optimiser.problem(reference, mesh, Some(&active), false);
-        untangle(&mut problem, &mut Default::default(), schedule, evaluations);
-        Problem::store(&problem, mesh);
-        let left = inverted_quads(optimiser, mesh);
-        if left.len() > inverted.len() {
-            *mesh = before;
-        } else {
-            inverted = left;
+        let mut left = Vec::new();
+        for part in parts(mesh, &active) {
+            if *work > MOST_WORK {
+                return inverted.len();
+            }
+            let before = among(elements, mesh, &part);
+            let saved = Saved::of(mesh, &part);
+            let schedule = effort.schedule_for(part.len());
+            let mut problem = elements.problem(mesh, &part);
+            untangle(&mut problem, &mut Default::default(), &schedule, work);
+            problem.store(mesh);
+            let after = among(elements, mesh, &part);
+            if after.len() > before.len() {
+                saved.restore(mesh);
+                left.extend(before);
+            } else {
+                left.extend(after);
+            }
         }
+        inverted = left;
     }
+    inverted.len()
 }
 
-fn inverted_quads(optimiser: &Optimiser, mesh: &QuadMesh) -> Vec<u32> {
-    let inverted = |q: &u32| optimiser.element_quality(mesh, *q).jacobian_ratio <= 0.0;
-    (0..mesh.quads.len() as u32).filter(inverted).collect()
+fn among(elements: &impl Elements, mesh: &QuadMesh, quads: &[u32]) -> Vec<u32> {
+    quads.iter().copied().filter(|q| elements.inverted(mesh, *q)).collect()
+}
+
+/// Vertices and edges of some quads, as they were.
+struct Saved {
+    vertices: Vec<(u32, Vertex)>,
+    edges: Vec<(u32, Edge)>,
+}
+
+impl Saved {
+    fn of(mesh: &QuadMesh, quads: &[u32]) -> Self {
+        let vertices = quads.iter().flat_map(|q| mesh.quads[*q as usize]);
+        let edges = quads.iter().flat_map(|q| mesh.quad_edges[*q as usize]);
+        Saved {
+            vertices: vertices.map(|v| (v, mesh.vertices[v as usize])).collect(),
+            edges: edges.map(|e| (e, mesh.edges[e as usize].clone())).collect(),
+        }
+    }
+
+    fn restore(self, mesh: &mut QuadMesh) {
+        self.vertices.into_iter().for_each(|(v, vertex)| mesh.vertices[v as usize] = vertex);
+        self.edges.into_iter().for_each(|(e, edge)| mesh.edges[e as usize] = edge);
+    }
 }
 
 /// `quads` and `rings` rings of quads around them, ascending.
@@ -75,4 +117,31 @@ fn grow(mesh: &QuadMesh, around: &[Vec<u32>], quads: &[u32], rings: usize) -> Ve
     }
     all.sort_unstable();
     all
+}
+
+/// The parts of `quads` that are connected through edges, each ascending.
+fn parts(mesh: &QuadMesh, quads: &[u32]) -> Vec<Vec<u32>> {
+    let mut waiting = vec![false; mesh.quads.len()];
+    quads.iter().for_each(|q| waiting[*q as usize] = true);
+    let mut parts = Vec::new();
+    for &first in quads {
+        if !std::mem::replace(&mut waiting[first as usize], false) {
+            continue;
+        }
+        let mut part = vec![first];
+        let mut next = 0;
+        while next < part.len() {
+            for e in mesh.quad_edges[part[next] as usize] {
+                for q in mesh.edges[e as usize].quads {
+                    if q != NONE && std::mem::replace(&mut waiting[q as usize], false) {
+                        part.push(q);
+                    }
+                }
+            }
+            next += 1;
+        }
+        part.sort_unstable();
+        parts.push(part);
+    }
+    parts
 }

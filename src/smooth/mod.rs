@@ -25,6 +25,7 @@ mod pair;
 mod problem;
 mod quality;
 mod reference;
+mod straight;
 mod untangle;
 mod walk;
 

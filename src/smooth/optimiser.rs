@@ -1,11 +1,12 @@
 //! The one optimiser: untangles if it must, then raises the power of the shape energy.
 
 use super::kernel::Measure;
-use super::local::untangle_locally;
+use super::local::{untangle_locally, Elements};
 use super::minimiser::{Lbfgs, Limits};
 use super::problem::Problem;
 use super::quality::{self, ElementQuality, Quality};
 use super::reference::Reference;
+use super::straight::untangle_straight;
 use super::untangle::untangle;
 use crate::domain::Boundary;
 use crate::mesh::{BoundaryError, BoundaryTolerance, QuadMesh};
@@ -30,8 +31,8 @@ pub struct Outcome {
     pub min_scaled_jacobian: f64,
     /// Largest error of the boundary edges that moved, divided by the tolerance.
     pub error_ratio: f64,
-    /// Energy evaluations used.
-    pub evaluations: usize,
+    /// Evaluations of elements, those of order 5 counting 1.
+    pub work: u64,
 }
 
 /// Step bound of the minimiser, in natural lengths.
@@ -43,6 +44,8 @@ const RESCUES: usize = 3;
 const WORKED_OFF: f64 = 0.9;
 /// Weight of the mean scaled Jacobian against the least when rounds are compared.
 const MEAN_WEIGHT: f64 = 0.2;
+/// Work after which no further way of untangling is tried.
+pub(super) const MOST_WORK: u64 = 2_000_000;
 /// Sweeps of the relaxation that restarts a hopeless mesh.
 const FLATTEN_SWEEPS: usize = 200;
 
@@ -78,7 +81,7 @@ const LEAST_STEPS: usize = 12;
 
 impl Effort {
     /// The schedule for so many quads.
-    fn schedule_for(self, quads: usize) -> Schedule {
+    pub(super) fn schedule_for(self, quads: usize) -> Schedule {
         let schedule = self.schedule();
         let scaled = |steps: usize| (steps * FULL_STEPS / quads.max(FULL_STEPS)).max(LEAST_STEPS.min(steps));
         Schedule {
@@ -142,9 +145,26 @@ impl State {
 pub struct Optimiser<'a> {
     boundary: &'a Boundary,
     error: Option<BoundaryError>,
+    linear: Reference,
     energy: Reference,
     dense: Reference,
     measuring: Reference,
+}
+
+/// Curved elements, their boundary vertices fixed.
+struct Curved<'a> {
+    optimiser: &'a Optimiser<'a>,
+    reference: &'a Reference,
+}
+
+impl Elements for Curved<'_> {
+    fn problem<'b>(&'b self, mesh: &QuadMesh, active: &[u32]) -> Problem<'b> {
+        self.optimiser.problem(self.reference, mesh, Some(active), false)
+    }
+
+    fn inverted(&self, mesh: &QuadMesh, quad: u32) -> bool {
+        self.optimiser.element_quality(mesh, quad).jacobian_ratio <= 0.0
+    }
 }
 
 impl<'a> Optimiser<'a> {
@@ -155,6 +175,7 @@ impl<'a> Optimiser<'a> {
         Optimiser {
             boundary,
             error: tolerance.map(BoundaryError::new),
+            linear: Reference::for_energy(1),
             energy: Reference::for_energy(order),
             dense: Reference::for_dense_energy(order),
             measuring: Reference::for_quality(order),
@@ -187,12 +208,12 @@ impl<'a> Optimiser<'a> {
     pub fn optimise(&self, mesh: &mut QuadMesh, active: Option<&[u32]>, effort: Effort) -> Outcome {
         let start = self.problem(&self.energy, mesh, active, true).unknowns;
         let held = self.quality_of(mesh, active).valid();
-        let mut evaluations = 0;
-        let mut state = self.run(&self.energy, mesh, active, effort, &mut evaluations);
+        let mut work = 0;
+        let mut state = self.run(&self.energy, mesh, active, effort, &mut work);
         let mut quality = self.quality_of(mesh, active);
         if state.valid && !quality.valid() {
             // Inverted between the samples: denser ones.
-            state = self.run(&self.dense, mesh, active, effort, &mut evaluations);
+            state = self.run(&self.dense, mesh, active, effort, &mut work);
             quality = self.quality_of(mesh, active);
         }
         if held && !quality.valid() {
@@ -208,7 +229,7 @@ impl<'a> Optimiser<'a> {
             least_jacobian: state.least_jacobian,
             min_scaled_jacobian: quality.min_scaled_jacobian,
             error_ratio: state.error_ratio,
-            evaluations,
+            work,
         }
     }
 
@@ -230,19 +251,23 @@ impl<'a> Optimiser<'a> {
         mesh: &mut QuadMesh,
         active: Option<&[u32]>,
         effort: Effort,
-        evaluations: &mut usize,
+        work: &mut u64,
     ) -> State {
         let schedule = effort.schedule_for(active.map_or(mesh.quads.len(), <[u32]>::len));
         let mut lbfgs = Lbfgs::default();
         let mut problem = self.problem(reference, mesh, active, true);
         let mut valid = problem.least_jacobian() > 0.0;
         if !valid && active.is_none() {
-            untangle_locally(self, reference, mesh, &schedule, evaluations);
+            untangle_straight(self.boundary, &self.linear, mesh, effort, work);
+            untangle_locally(&Curved { optimiser: self, reference }, mesh, effort, work);
             problem = self.problem(reference, mesh, active, true);
             valid = problem.least_jacobian() > 0.0;
         }
         if !valid {
             for (prepare, slide) in schedule.ways.iter().copied() {
+                if *work > MOST_WORK {
+                    break;
+                }
                 // Boundary vertices are only prepared where they can slide.
                 problem = self.problem(reference, mesh, active, slide || prepare == Prepare::Spread);
                 match prepare {
@@ -257,7 +282,7 @@ impl<'a> Optimiser<'a> {
                         }
                     }
                 }
-                valid = untangle(&mut problem, &mut lbfgs, &schedule, evaluations);
+                valid = untangle(&mut problem, &mut lbfgs, &schedule, work);
                 problem.store(mesh);
                 if valid {
                     break;
@@ -267,7 +292,7 @@ impl<'a> Optimiser<'a> {
             valid = problem.least_jacobian() > 0.0;
         }
         if valid {
-            self.improve(&mut problem, &mut lbfgs, &schedule, evaluations);
+            self.improve(&mut problem, &mut lbfgs, &schedule, work);
         }
         problem.store(mesh);
         State::of(&mut problem, valid)
@@ -275,13 +300,7 @@ impl<'a> Optimiser<'a> {
 
     /// Raises the power of the shape energy from a valid state. What comes out keeps the tolerance if
     /// the start or any round did, and has the best quality among those that do.
-    fn improve(
-        &self,
-        problem: &mut Problem,
-        lbfgs: &mut Lbfgs,
-        schedule: &Schedule,
-        evaluations: &mut usize,
-    ) {
+    fn improve(&self, problem: &mut Problem, lbfgs: &mut Lbfgs, schedule: &Schedule, work: &mut u64) {
         // Better: closer to the tolerance while above it, then the quality.
         let rank =
             |p: &Problem| (p.error_ratio.max(1.0), -p.scaled_jacobian - MEAN_WEIGHT * p.mean_scaled_jacobian);
@@ -299,7 +318,7 @@ impl<'a> Optimiser<'a> {
                 let metric = std::mem::take(&mut problem.metric);
                 let before = problem.energy(&x);
                 let minimum = lbfgs.minimise(problem, &mut x, &metric, REACH, limits);
-                *evaluations += minimum.evaluations;
+                *work += problem.cost(minimum.evaluations);
                 (problem.unknowns, problem.metric) = (x, metric);
                 problem.refresh();
                 let now = rank(problem);

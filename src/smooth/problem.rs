@@ -125,6 +125,13 @@ macro_rules! for_samples {
 }
 
 impl<'a> Problem<'a> {
+    /// The work of so many evaluations, in evaluations of an element of order 5.
+    pub fn cost(&self, evaluations: usize) -> u64 {
+        const STANDARD_SAMPLES: usize = 49;
+        let samples = self.reference.samples.len().pow(2) * self.elements.len();
+        (evaluations * samples / STANDARD_SAMPLES) as u64
+    }
+
     /// The value at `x`, alone.
     pub fn energy(&mut self, x: &[f64]) -> f64 {
         let mut gradient = vec![0.0; x.len()];

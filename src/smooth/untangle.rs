@@ -22,12 +22,12 @@ const MOST_DECREASE: f64 = 0.9;
 const REACH: f64 = 1.0;
 
 /// As many rounds and steps as the schedule allows; `true` when no sample is inverted any more. Adds to
-/// `evaluations`.
+/// `work`.
 pub(super) fn untangle(
     problem: &mut Problem,
     lbfgs: &mut Lbfgs,
     schedule: &Schedule,
-    evaluations: &mut usize,
+    work: &mut u64,
 ) -> bool {
     let (rounds, steps) = (schedule.untangle_rounds, schedule.untangle_steps);
     let mut least = problem.least_jacobian();
@@ -43,7 +43,7 @@ pub(super) fn untangle(
         let before = problem.energy(&x);
         let limits = Limits { steps, progress: 1e-3 };
         let minimum = lbfgs.minimise(problem, &mut x, &metric, REACH, limits);
-        *evaluations += minimum.evaluations + 2;
+        *work += problem.cost(minimum.evaluations + 2);
         (problem.unknowns, problem.metric) = (x, metric);
         least = problem.least_jacobian();
         if !(before.is_finite() && minimum.value.is_finite()) {

@@ -1,0 +1,77 @@
+//! Untangling with straight edges first.
+//!
+//! Elements with straight sides have two unknowns a vertex and four corners to look at, against some
+//! twenty unknowns and dozens of samples for curved ones, and are far better conditioned. So a
+//! tangled mesh is untangled so, boundary edges taken as chords, and gets its curves back where the
+//! vertices already are in the right order. What the curves invert again is mended locally.
+
+use super::kernel::Measure;
+use super::local::{untangle_locally, Elements};
+use super::minimiser::{Lbfgs, Limits};
+use super::optimiser::Effort;
+use super::problem::Problem;
+use super::reference::Reference;
+use super::untangle::untangle;
+use crate::domain::Boundary;
+use crate::mesh::QuadMesh;
+use crate::numerics::cross;
+
+/// Powers of the shape energy after untangling: room for the curves.
+const POWERS: [u32; 2] = [2, 4];
+/// Step bound of the minimiser, in natural lengths.
+const REACH: f64 = 0.5;
+/// How much cheaper an evaluation of straight-sided elements is: so much larger meshes may take all steps.
+const CHEAPER: usize = 8;
+
+/// Straight-sided elements; the boundary does not slide.
+struct Straight<'a> {
+    boundary: &'a Boundary,
+    reference: &'a Reference,
+}
+
+impl Elements for Straight<'_> {
+    fn problem<'a>(&'a self, mesh: &QuadMesh, active: &[u32]) -> Problem<'a> {
+        Problem::new(self.boundary, self.reference, None, mesh, Some(active), false)
+    }
+
+    fn inverted(&self, mesh: &QuadMesh, quad: u32) -> bool {
+        let p = mesh.quads[quad as usize].map(|v| mesh.vertices[v as usize].point);
+        (0..4).any(|i| cross(p[(i + 1) % 4] - p[i], p[(i + 3) % 4] - p[i]) <= 0.0)
+    }
+}
+
+/// Moves the interior vertices of a mesh whose straight-sided elements are inverted somewhere until none is,
+/// and straightens its interior edges; the mesh is left as it was if that fails.
+pub(super) fn untangle_straight(
+    boundary: &Boundary,
+    linear: &Reference,
+    mesh: &mut QuadMesh,
+    effort: Effort,
+    work: &mut u64,
+) {
+    let elements = Straight { boundary, reference: linear };
+    if !(0..mesh.quads.len() as u32).any(|q| elements.inverted(mesh, q)) {
+        return;
+    }
+    let mut straight = mesh.clone();
+    straight.edges.iter_mut().for_each(|e| e.bubbles.clear());
+    let left = untangle_locally(&elements, &mut straight, effort, work);
+    let schedule = effort.schedule_for(mesh.quads.len() / CHEAPER);
+    let mut problem = Problem::new(boundary, linear, None, &straight, None, false);
+    let mut lbfgs = Lbfgs::default();
+    if left > 0 && !untangle(&mut problem, &mut lbfgs, &schedule, work) {
+        return;
+    }
+    for power in POWERS {
+        problem.refresh();
+        problem.prepare(Measure::Shape(power));
+        let mut x = std::mem::take(&mut problem.unknowns);
+        let metric = std::mem::take(&mut problem.metric);
+        let limits = Limits { steps: schedule.untangle_steps, progress: 1e-3 };
+        let minimum = lbfgs.minimise(&mut problem, &mut x, &metric, REACH, limits);
+        *work += problem.cost(minimum.evaluations);
+        (problem.unknowns, problem.metric) = (x, metric);
+    }
+    problem.store(&mut straight);
+    *mesh = straight;
+}
