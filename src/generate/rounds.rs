@@ -2,10 +2,11 @@
 
 use super::watch::Watch;
 use crate::base_mesh::ElementSize;
-use crate::domain::Boundary;
+use crate::domain::{Boundary, BoundaryPoint, Place};
 use crate::error::{Error, Result};
 use crate::layout::QuadLayout;
 use crate::mesh::{scaled_jacobian_ceiling, BoundaryError, BoundaryTolerance, QuadMesh, Vertex};
+use crate::numerics::Point;
 use crate::options::{Options, Subdivision};
 use crate::progress::Stage;
 use crate::refine::{self, Limits};
@@ -19,6 +20,10 @@ const ROUNDS: usize = 5;
 pub(super) const MOST_WORK: u64 = 6_000_000;
 /// Edge lengths in wanted sizes above which a chord is divided.
 const TOO_LONG: f64 = 2.5;
+/// Spacing of the grid on which the layout's vertices start, in the shortest edge there. 2^-10.
+const START_GRID: f64 = 1.0 / 1024.0;
+/// Keeps lengths of simple ratio to the diagonal away from powers of two.
+const OFF_POWERS: f64 = 1.37;
 /// Most elements, as a multiple of the first round's, before another layout is tried.
 const MOST_GROWTH: usize = 3;
 
@@ -148,13 +153,37 @@ fn divide_long(
     Ok(mesh)
 }
 
-/// The layout as a mesh with straight interior edges.
+/// The layout as a mesh with straight interior edges. Its vertices are put on grids fine against the edges
+/// there: where they lie exactly does not matter yet, and the rounding errors of the input, which the
+/// streamlines made a thousand times as much, end here.
 fn start(boundary: &Boundary, layout: &QuadLayout) -> Result<QuadMesh> {
-    let vertices = layout
-        .vertices
-        .iter()
-        .map(|v| Vertex { point: boundary.point(v.place).unwrap_or(v.point), place: v.place })
-        .collect();
+    let mut shortest = vec![f64::INFINITY; layout.vertices.len()];
+    for quad in &layout.quads {
+        for i in 0..4 {
+            let ends = [quad[i] as usize, quad[(i + 1) % 4] as usize];
+            let [a, b] = ends.map(|v| layout.vertices[v].point);
+            ends.iter().for_each(|v| shortest[*v] = shortest[*v].min((b - a).norm()));
+        }
+    }
+    let snap = |x: f64, cell: f64| if cell > 0.0 { (x / cell).round() * cell } else { x };
+    let vertices = layout.vertices.iter().zip(shortest).map(|(v, shortest)| {
+        let cell = START_GRID * (OFF_POWERS * shortest).log2().floor().exp2();
+        match v.place {
+            Place::Interior => {
+                let point = Point::new(snap(v.point.x, cell), snap(v.point.y, cell));
+                Vertex { point, place: v.place }
+            }
+            Place::Boundary(p) => {
+                let s = boundary.chains[p.chain as usize].wrap(snap(p.s, cell));
+                let place = Place::Boundary(BoundaryPoint { s, ..p });
+                Vertex { point: boundary.point(place).unwrap_or(v.point), place }
+            }
+            Place::Junction(_) => {
+                Vertex { point: boundary.point(v.place).unwrap_or(v.point), place: v.place }
+            }
+        }
+    });
+    let vertices = vertices.collect();
     QuadMesh::new(boundary, vertices, layout.quads.clone(), layout.region.clone(), &HashMap::new())
         .map_err(|(reason, at)| Error::Layout { reason, at: Some(at) })
 }

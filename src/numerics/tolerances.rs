@@ -167,8 +167,8 @@ pub const SAME_MOMENTS: f64 = 1e-6;
 
 /// Grid on which the optimiser's positions and shapes stay, relative to the local edge length: one step makes of
 /// the input's rounding errors (1e-16, far from the caller's origin 1e-13) a hundred times as much, the next
-/// steps would go on; and no quality or boundary error notices 4e-6. 2^-18.
-pub const UNKNOWN_GRID: f64 = 1.0 / 262_144.0;
+/// steps would go on; and no quality or boundary error notices 6e-5. 2^-14.
+pub const UNKNOWN_GRID: f64 = 1.0 / 16_384.0;
 
 /// Sizes and errors that differ by less than this share are equally large when changes of a mesh are put
 /// in order: in symmetric domains many are equal up to rounding.

@@ -17,6 +17,15 @@ pub(super) trait Objective {
     fn evaluate(&mut self, x: &[f64], gradient: &mut [f64]) -> f64;
 }
 
+/// What is natural to each variable.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Scales {
+    /// The square of a length: the first inverse Hessian up to a factor.
+    pub metric: Vec<f64>,
+    /// Spacing of the grid that the variable stays on.
+    pub cells: Vec<f64>,
+}
+
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Limits {
@@ -43,7 +52,6 @@ pub(super) struct Lbfgs {
     next_gradient: Vec<f64>,
     next: Vec<f64>,
     direction: Vec<f64>,
-    grid: Vec<f64>,
 }
 
 /// Four partial sums, so that additions need not wait for each other.
@@ -59,10 +67,10 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
-/// Spacing of the grid for a variable whose squared natural length is `metric`: a power of two, so that
-/// noise in the length leaves it the same.
-fn grid_cell(metric: f64) -> f64 {
-    UNKNOWN_GRID * (0.5 * (OFF_POWERS * metric).log2()).floor().exp2()
+/// Spacing of the grid for a variable that moves along edges whose squared length is `squared`: a power of two,
+/// so that noise in the length leaves it the same.
+pub(super) fn grid_cell(squared: f64) -> f64 {
+    UNKNOWN_GRID * (0.5 * (OFF_POWERS * squared).log2()).floor().exp2()
 }
 
 /// Rounded to the grid. Without it the rounding errors of the input, about doubled by every iteration, would
@@ -88,30 +96,35 @@ impl Lbfgs {
             &mut self.next_gradient,
             &mut self.next,
             &mut self.direction,
-            &mut self.grid,
         ]) {
             v.resize(n, 0.0);
         }
     }
 
-    /// Minimises from `x`, which must be feasible, and leaves the best point there. `metric[i]` is the
-    /// square of a length natural to variable i: the first inverse Hessian up to a factor. No
-    /// variable moves further than `reach` · √metric in one step; all stop on a grid fine against √metric.
+    /// Minimises from `x`, which must be feasible, and leaves the best point there. No variable moves further
+    /// than `reach` · √metric in one step; all stay on their grids.
     pub fn minimise(
         &mut self,
         objective: &mut impl Objective,
         x: &mut [f64],
-        metric: &[f64],
+        scales: &Scales,
         reach: f64,
         limits: Limits,
     ) -> Minimum {
         let n = x.len();
         self.resize(n);
-        for (cell, metric) in self.grid.iter_mut().zip(metric) {
-            *cell = grid_cell(*metric);
+        let Scales { metric, cells } = scales;
+        for k in 0..n {
+            self.next[k] = on_grid(x[k], cells[k]);
         }
-        let mut value = objective.evaluate(x, &mut self.gradient);
+        let mut value = objective.evaluate(&self.next, &mut self.gradient);
         let mut evaluations = 1;
+        if value.is_finite() {
+            x.copy_from_slice(&self.next);
+        } else {
+            value = objective.evaluate(x, &mut self.gradient);
+            evaluations += 1;
+        }
         let (mut kept, mut head) = (0, 0);
         let mut history = [f64::INFINITY; 5];
         for step in 0..limits.steps {
@@ -134,7 +147,7 @@ impl Lbfgs {
             let mut found = None;
             for _ in 0..HALVINGS {
                 for (k, next) in self.next.iter_mut().enumerate() {
-                    *next = on_grid(x[k] + t * self.direction[k], self.grid[k]);
+                    *next = on_grid(x[k] + t * self.direction[k], cells[k]);
                 }
                 let trial = objective.evaluate(&self.next, &mut self.next_gradient);
                 evaluations += 1;

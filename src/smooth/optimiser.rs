@@ -313,20 +313,14 @@ impl<'a> Optimiser<'a> {
             }
             // A power is worked off before the next, or its worst elements hide all others.
             for _ in 0..schedule.repeats {
-                problem.prepare(Measure::Shape(*power));
-                let mut x = std::mem::take(&mut problem.unknowns);
-                let metric = std::mem::take(&mut problem.metric);
-                let before = problem.energy(&x);
-                let minimum = lbfgs.minimise(problem, &mut x, &metric, REACH, limits);
-                *work += problem.cost(minimum.evaluations);
-                (problem.unknowns, problem.metric) = (x, metric);
+                let [before, after] = problem.minimise(lbfgs, Measure::Shape(*power), REACH, limits, work);
                 problem.refresh();
                 let now = rank(problem);
                 if now < best.0 {
                     best.0 = now;
                     best.1.clone_from(&problem.unknowns);
                 }
-                if minimum.value > WORKED_OFF * before {
+                if after > WORKED_OFF * before {
                     break;
                 }
             }

@@ -9,7 +9,7 @@ mod sampling;
 mod unknowns;
 
 use super::kernel::{self, Measure, Sides, Target};
-use super::minimiser::Objective;
+use super::minimiser::{Lbfgs, Limits, Objective, Scales};
 use super::reference::{Reference, MAX_SAMPLES};
 use crate::domain::{Boundary, BoundaryPoint, Place, Span};
 use crate::mesh::{BoundaryError, QuadMesh};
@@ -94,8 +94,7 @@ pub(super) struct Problem<'a> {
     /// Point and derivative at the nodes of boundary edges.
     nodes: Vec<[Vector; 2]>,
     pub unknowns: Vec<f64>,
-    /// Squares of natural lengths of the unknowns.
-    pub metric: Vec<f64>,
+    pub scales: Scales,
     pub measure: Measure,
     /// Least scaled Jacobian at the last refresh, and the mean of the elements'.
     pub scaled_jacobian: f64,
@@ -125,6 +124,25 @@ macro_rules! for_samples {
 }
 
 impl<'a> Problem<'a> {
+    /// Minimises `measure` from the present unknowns: the value before and after. Adds to `work`.
+    pub fn minimise(
+        &mut self,
+        lbfgs: &mut Lbfgs,
+        measure: Measure,
+        reach: f64,
+        limits: Limits,
+        work: &mut u64,
+    ) -> [f64; 2] {
+        self.prepare(measure);
+        let mut x = std::mem::take(&mut self.unknowns);
+        let scales = std::mem::take(&mut self.scales);
+        let before = self.energy(&x);
+        let minimum = lbfgs.minimise(self, &mut x, &scales, reach, limits);
+        *work += self.cost(minimum.evaluations + 2);
+        (self.unknowns, self.scales) = (x, scales);
+        [before, minimum.value]
+    }
+
     /// The work of so many evaluations, in evaluations of an element of order 5.
     pub fn cost(&self, evaluations: usize) -> u64 {
         const STANDARD_SAMPLES: usize = 49;
@@ -315,7 +333,7 @@ mod tests {
             problem.prepare(measure);
             assert!(problem.evaluate(&x, &mut gradient).is_finite());
             for i in 0..x.len() {
-                let step = 1e-6 * problem.metric[i].sqrt();
+                let step = 1e-6 * problem.scales.metric[i].sqrt();
                 let mut at = |t: f64| {
                     let mut y = x.clone();
                     y[i] += t * step;

@@ -64,13 +64,8 @@ pub(super) fn untangle_straight(
     }
     for power in POWERS {
         problem.refresh();
-        problem.prepare(Measure::Shape(power));
-        let mut x = std::mem::take(&mut problem.unknowns);
-        let metric = std::mem::take(&mut problem.metric);
         let limits = Limits { steps: schedule.untangle_steps, progress: 1e-3 };
-        let minimum = lbfgs.minimise(&mut problem, &mut x, &metric, REACH, limits);
-        *work += problem.cost(minimum.evaluations);
-        (problem.unknowns, problem.metric) = (x, metric);
+        problem.minimise(&mut lbfgs, Measure::Shape(power), REACH, limits, work);
     }
     problem.store(&mut straight);
     *mesh = straight;

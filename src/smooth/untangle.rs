@@ -37,16 +37,10 @@ pub(super) fn untangle(
         if least > UNTANGLED {
             break;
         }
-        problem.prepare(Measure::Regularised { epsilon });
-        let mut x = std::mem::take(&mut problem.unknowns);
-        let metric = std::mem::take(&mut problem.metric);
-        let before = problem.energy(&x);
         let limits = Limits { steps, progress: 1e-3 };
-        let minimum = lbfgs.minimise(problem, &mut x, &metric, REACH, limits);
-        *work += problem.cost(minimum.evaluations + 2);
-        (problem.unknowns, problem.metric) = (x, metric);
+        let [before, after] = problem.minimise(lbfgs, Measure::Regularised { epsilon }, REACH, limits, work);
         least = problem.least_jacobian();
-        if !(before.is_finite() && minimum.value.is_finite()) {
+        if !(before.is_finite() && after.is_finite()) {
             break;
         }
         // Far from valid and not getting there in time: what a merge inverts for good.
@@ -59,7 +53,7 @@ pub(super) fn untangle(
             }
         }
         // The paper's rule: ε so small that the barrier χ stands just below the present least d.
-        let share = (1.0 - minimum.value / before)
+        let share = (1.0 - after / before)
             .max(schedule.untangle_decrease.max(HURRY * round as f64).min(MOST_DECREASE));
         let chi = 0.5 * (least + (least * least + epsilon * epsilon).sqrt());
         let bound = (1.0 - share) * chi;

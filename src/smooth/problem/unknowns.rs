@@ -72,7 +72,7 @@ impl<'a> Problem<'a> {
             adjoint: Vec::new(),
             nodes: Vec::new(),
             unknowns: Vec::new(),
-            metric: Vec::new(),
+            scales: Default::default(),
             measure: Measure::Shape(2),
             scaled_jacobian: 0.0,
             mean_scaled_jacobian: 0.0,
