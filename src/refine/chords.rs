@@ -1,5 +1,6 @@
 //! Chords: strips of quads from edge to opposite edge, from boundary to boundary or closed.
 
+use super::live::LiveMesh;
 use crate::mesh::QuadMesh;
 use crate::numerics::NONE;
 
@@ -53,13 +54,13 @@ pub(super) fn chord_through(mesh: &QuadMesh, edge: u32) -> Chord {
     back
 }
 
-/// All chords, in order of their first edges.
-pub(super) fn chords(mesh: &QuadMesh) -> Vec<Chord> {
-    let mut seen = vec![false; mesh.edges.len()];
+/// All chords of a mesh, in order of their first edges.
+pub(super) fn chords(live: &LiveMesh) -> Vec<Chord> {
+    let mut seen = vec![false; live.mesh.edges.len()];
     let mut list = Vec::new();
-    for e in 0..mesh.edges.len() {
-        if !seen[e] {
-            let chord = chord_through(mesh, e as u32);
+    for e in (0..live.mesh.edges.len() as u32).filter(|e| live.has_edge(*e)) {
+        if !seen[e as usize] {
+            let chord = chord_through(&live.mesh, e);
             chord.rungs.iter().for_each(|r| seen[*r as usize] = true);
             list.push(chord);
         }

@@ -2,37 +2,38 @@
 //!
 //! Chords go in the order of quads removed per element spoiled (inverted or nearly so right
 //! after the merge): many quads first, at little harm. After each removal the surroundings are optimised;
-//! a result that breaks a limit is forgotten. The scores of chords that were not tried yet are only
-//! renewed when they come up ("lazy greedy").
+//! a result that breaks a limit is forgotten. The scores of what was not tried yet are only
+//! renewed when they come up ("lazy greedy"), and what was refused is tried again only when
+//! something changed at the spot that it was refused for. So everything costs what it touches.
 
-use super::chords::{chords, Chord};
-use super::collapse::{collapse, Collapsed, Refusal};
+use super::chords::{chord_through, chords, Chord};
+use super::live::LiveMesh;
+use super::merge::{diagonal_growth, Merge, Refusal};
+use super::patch::Patch;
 use super::pieces::least_pieces;
-use super::stars::Stars;
-use super::trial::{boundary_edges, compact, on_boundary, settle, Limits};
-use crate::domain::Boundary;
+use super::trial::{settle, Limits, Outcome};
+use crate::domain::{Boundary, Place};
 use crate::error::{Error, Result};
 use crate::mesh::QuadMesh;
 use crate::numerics::tolerances::ORDER_TIE;
 use crate::progress::{Progress, Stage};
-use crate::smooth::{Effort, Optimiser};
-use std::collections::{HashMap, HashSet};
+use crate::smooth::{Effort, ElementQuality, Optimiser};
+use std::cmp::Ordering;
+use std::collections::{BinaryHeap, HashMap, HashSet};
 
 /// Scaled Jacobian below which an element counts as spoiled by a merge.
 const SPOILED: f64 = 0.15;
-/// Passes over all chords and diagonals.
-const PASSES: usize = 4;
+/// Most passes over all chords and diagonals; it ends when nothing changes.
+const PASSES: usize = 8;
 /// A renewed score counts as still the best at this share of the next one's old score.
 const STILL_BEST: f64 = 0.8;
 /// Growth of Σ (valence − ideal)² that a diagonal collapse may cost.
 const DIAGONAL_IRREGULARITY: isize = 2;
 
-/// Most element evaluations of one coarsening (a few microseconds each at order 5): what is coarse
-/// enough by then is taken.
+/// Most element evaluations of one coarsening (a few microseconds each at order 5), in all and for each
+/// quad: what is coarse enough by then is taken.
 const MOST_WORK: u64 = 1_500_000;
-
-/// Quads copied in the time of one element evaluation: a change that is only tried out costs a copy.
-const COPIES_PER_EVALUATION: u64 = 8;
+const MOST_WORK_PER_QUAD: u64 = 1500;
 
 /// State of a coarsening.
 struct Coarsening<'a> {
@@ -43,20 +44,56 @@ struct Coarsening<'a> {
     holds: bool,
     /// Least number of edges of each chain.
     least: Vec<usize>,
-    mesh: QuadMesh,
-    stars: Stars,
+    live: LiveMesh,
+    /// Quality of the living quads.
+    quality: Vec<ElementQuality>,
     /// Number of changes made.
     time: usize,
     /// When each vertex was last moved or merged.
     changed: Vec<usize>,
-    /// When each chord or diagonal was last refused.
-    failed: HashMap<Key, usize>,
-    /// Element evaluations spent.
+    failed: HashMap<Key, Failure>,
+    /// Element evaluations spent, and when to stop.
     work: u64,
+    most_work: u64,
 }
 
-/// A chord's or diagonal's name that survives changes elsewhere: the least pair of vertices on it.
-type Key = [u32; 2];
+/// Names what can be removed: a chord by the least of its edges, a diagonal by its ends. Neither
+/// changes its name because of changes elsewhere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+enum Key {
+    Chord(u32),
+    Diagonal([u32; 2]),
+}
+
+/// When something was refused, and the vertices at fault; none if it is due to all of them.
+struct Failure {
+    time: usize,
+    at: Vec<u32>,
+}
+
+/// Something to be tried: the higher `rank` first, then the lesser key.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Candidate {
+    rank: [f64; 2],
+    key: Key,
+    /// When the rank was computed.
+    time: usize,
+}
+
+impl Eq for Candidate {}
+
+impl Ord for Candidate {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let [first, second] = [0, 1].map(|k| self.rank[k].total_cmp(&other.rank[k]));
+        first.then(second).then(other.key.cmp(&self.key))
+    }
+}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
 
 /// Coarsens `mesh`, which should be valid and within the tolerance; a mesh that is not is
 /// optimised first. The result has no more elements, keeps `limits`, the tolerance, all junctions
@@ -97,83 +134,77 @@ pub fn coarsen(
     let holds = quality.min_scaled_jacobian >= limits.scaled_jacobian
         && quality.min_jacobian_ratio >= limits.jacobian_ratio
         && largest <= limits.size;
-    let stars = Stars::new(mesh.vertices.len(), &mesh.quads);
-    let changed = vec![0; mesh.vertices.len()];
+    let most_work = MOST_WORK.max(MOST_WORK_PER_QUAD * mesh.quads.len() as u64);
     let mut run = Coarsening {
         boundary,
         optimiser,
         limits,
         holds,
         least,
-        mesh,
-        stars,
+        quality: quality.elements,
         time: 0,
-        changed,
+        changed: vec![0; mesh.vertices.len()],
+        live: LiveMesh::new(mesh, boundary.chains.len()),
         failed: HashMap::new(),
         work: 0,
+        most_work,
     };
     for pass in 0..PASSES {
         let before = run.time;
         progress.report(Stage::Refine, pass as f64 / PASSES as f64)?;
         run.remove_chords(progress)?;
         run.collapse_diagonals(progress)?;
-        if run.time == before || run.work > MOST_WORK {
+        if run.time == before || run.work > run.most_work {
             break;
         }
     }
-    compact(&mut run.mesh);
-    Ok(run.mesh)
+    Ok(run.live.compact())
 }
 
 impl Coarsening<'_> {
-    /// Edges that each chain can lose.
-    fn spare(&self) -> Vec<usize> {
-        let now = boundary_edges(&self.mesh, self.least.len());
-        now.iter().zip(&self.least).map(|(now, least)| now.saturating_sub(*least)).collect()
-    }
-
-    fn key(&self, chord: &Chord) -> Key {
-        let key = |e: &u32| {
-            let [a, b] = self.mesh.edges[*e as usize].vertices;
-            [a.min(b), a.max(b)]
-        };
-        chord.rungs.iter().map(key).min().unwrap_or_default()
-    }
-
-    fn merge_chord(&self, chord: &Chord, spare: &[usize]) -> std::result::Result<Collapsed, Refusal> {
-        let pairs: Vec<([u32; 2], bool)> = chord
-            .rungs
-            .iter()
-            .map(|e| {
-                let edge = &self.mesh.edges[*e as usize];
-                (edge.vertices, edge.span.is_some())
-            })
-            .collect();
-        if pairs
-            .iter()
-            .any(|([a, b], rim)| !rim && on_boundary(&self.mesh, *a) && on_boundary(&self.mesh, *b))
-        {
-            return Err(Refusal::Pinch);
+    fn merge_chord(&self, chord: &Chord) -> std::result::Result<Merge<'_>, Refusal> {
+        let mesh = &self.live.mesh;
+        let on_boundary = |v: u32| mesh.vertices[v as usize].place != Place::Interior;
+        let mut pairs = Vec::with_capacity(chord.rungs.len());
+        for e in &chord.rungs {
+            let edge = &mesh.edges[*e as usize];
+            if edge.span.is_none() && edge.vertices.iter().all(|v| on_boundary(*v)) {
+                return Err(Refusal::Pinch);
+            }
+            pairs.push((edge.vertices, edge.span.is_some()));
         }
-        collapse(self.boundary, &self.mesh, &self.stars, &pairs, &chord.quads, spare)
+        Merge::new(self.boundary, &self.live, &pairs, &chord.quads, &self.least)
     }
 
     /// Quads removed per element spoiled.
-    fn score(&self, change: &Collapsed) -> f64 {
-        let removed = self.mesh.quads.len() - change.mesh.quads.len();
-        let mut near: Vec<u32> = change.touched.iter().flat_map(|v| change.stars.of(*v)).copied().collect();
-        near.sort_unstable();
-        near.dedup();
-        let spoiled = near
-            .iter()
-            .filter(|q| self.optimiser.element_quality(&change.mesh, **q).scaled_jacobian < SPOILED)
-            .count();
-        removed as f64 / (1.0 + spoiled as f64 + 0.5 * change.irregularity.max(0) as f64)
+    fn score(&self, merge: &Merge) -> f64 {
+        let spoiled = Patch::new(self.boundary, merge, &merge.touched, 0).map_or(0, |patch| {
+            let spoils = |q: &u32| self.optimiser.element_quality(&patch.mesh, *q).scaled_jacobian < SPOILED;
+            (0..patch.quads.len() as u32).filter(spoils).count()
+        });
+        merge.removed as f64 / (1.0 + spoiled as f64 + 0.5 * merge.irregularity.max(0) as f64)
     }
 
-    /// Whether a chord's surroundings changed after `time`.
-    fn changed_since(&self, quads: &[u32], time: usize) -> bool {
-        quads.iter().flat_map(|q| self.mesh.quads[*q as usize]).any(|v| self.changed[v as usize] > time)
+    /// Whether any of the vertices changed after `time`.
+    fn changed_since(&self, vertices: &[u32], time: usize) -> bool {
+        vertices.iter().any(|v| self.changed[*v as usize] > time)
+    }
+
+    fn corners(&self, quads: &[u32]) -> Vec<u32> {
+        quads.iter().flat_map(|q| self.live.mesh.quads[*q as usize]).collect()
+    }
+
+    /// Whether `key`, whose quads are `quads`, was refused and nothing changed since that it was refused for.
+    fn still_refused(&self, key: Key, quads: &[u32]) -> bool {
+        self.failed.get(&key).is_some_and(|failure| {
+            let all = failure.at.is_empty().then(|| self.corners(quads));
+            !self.changed_since(all.as_ref().unwrap_or(&failure.at), failure.time)
+        })
+    }
+
+    /// Notes that `key` is impossible as the mesh is.
+    fn refuse(&mut self, key: Key) {
+        self.failed.insert(key, Failure { time: self.time, at: Vec::new() });
     }
 
     /// The limits within some rings around the quads `at`: what is worse there already need not become
@@ -182,163 +213,172 @@ impl Coarsening<'_> {
         if self.holds {
             return self.limits;
         }
-        let vertices: Vec<u32> = at.iter().flat_map(|q| self.mesh.quads[*q as usize]).collect();
-        let near = self.stars.rings(&self.mesh, &vertices, rings);
-        let now = self.optimiser.quality_of(&self.mesh, Some(&near));
-        Limits {
-            scaled_jacobian: self.limits.scaled_jacobian.min(now.min_scaled_jacobian),
-            jacobian_ratio: self.limits.jacobian_ratio.min(now.min_jacobian_ratio),
-            size: now.elements.iter().map(|e| e.size).fold(self.limits.size, f64::max),
+        let mut limits = self.limits;
+        for q in self.live.rings(&self.corners(at), rings) {
+            let now = self.quality[q as usize];
+            limits.scaled_jacobian = limits.scaled_jacobian.min(now.scaled_jacobian);
+            limits.jacobian_ratio = limits.jacobian_ratio.min(now.jacobian_ratio);
+            limits.size = limits.size.max(now.size);
         }
+        limits
     }
 
-    /// Takes a change, made at the quads `at`, over if it holds; whether it did.
-    fn attempt(&mut self, change: Collapsed, at: &[u32]) -> bool {
-        let stars = change.stars.clone();
+    /// Tries a merge, of the quads `at`; the outcome and the element evaluations spent.
+    fn trial(&self, merge: Merge, at: &[u32]) -> (Outcome, u64) {
         let mut work = 0;
-        let settled = settle(self.optimiser, change, &|rings| self.limits_at(at, rings), &mut work);
-        self.work += work;
-        let Some((mesh, active)) = settled else { return false };
+        let outcome = settle(self.optimiser, merge, &|rings| self.limits_at(at, rings), &mut work);
+        (outcome, work)
+    }
+
+    /// Puts the outcome of trying `key` into the mesh, or on record. The quads that changed.
+    fn take(&mut self, key: Key, outcome: Outcome) -> Option<Vec<u32>> {
+        let settled = match outcome {
+            Ok(settled) => settled,
+            Err(at) => {
+                self.failed.insert(key, Failure { time: self.time, at });
+                return None;
+            }
+        };
         self.time += 1;
-        for v in active.iter().flat_map(|q| mesh.quads[*q as usize]) {
-            self.changed[v as usize] = self.time;
+        for (v, _) in &settled.removal.stars {
+            self.changed[*v as usize] = self.time;
         }
-        (self.mesh, self.stars) = (mesh, stars);
-        true
+        self.live.splice(&settled.patch, settled.removal);
+        let active: Vec<u32> = settled.active.iter().map(|q| settled.patch.quads[*q as usize]).collect();
+        for (q, quality) in active.iter().zip(settled.quality) {
+            self.quality[*q as usize] = quality;
+            for v in self.live.mesh.quads[*q as usize] {
+                self.changed[v as usize] = self.time;
+            }
+        }
+        Some(active)
     }
 
     fn remove_chords(&mut self, progress: &Progress) -> Result<()> {
-        // Last score and when it was computed; chords that failed in this pass.
-        let mut scores: HashMap<Key, (f64, usize)> = HashMap::new();
-        let mut failed: HashSet<Key> = HashSet::new();
-        loop {
-            let spare = self.spare();
-            let mut queue: Vec<(f64, Key, Chord)> = Vec::new();
-            for chord in chords(&self.mesh) {
-                let key = self.key(&chord);
-                if failed.contains(&key)
-                    || self.failed.get(&key).is_some_and(|t| !self.changed_since(&chord.quads, *t))
-                {
-                    continue;
-                }
-                if self.work > MOST_WORK {
-                    return Ok(());
-                }
-                if let Some((score, _)) = scores.get(&key) {
-                    queue.push((*score, key, chord));
-                    continue;
-                }
-                self.work += self.mesh.quads.len() as u64 / COPIES_PER_EVALUATION;
-                if let Ok(change) = self.merge_chord(&chord, &spare) {
-                    let score = self.score(&change);
-                    scores.insert(key, (score, self.time));
-                    queue.push((score, key, chord));
-                } else {
-                    self.failed.insert(key, self.time);
-                }
+        let mut queue = BinaryHeap::new();
+        for chord in chords(&self.live) {
+            let key = name(&chord);
+            if self.still_refused(key, &chord.quads) {
+                continue;
             }
-            queue.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            let mut accepted = false;
-            let mut i = 0;
-            while i < queue.len() {
-                progress.report(Stage::Refine, 0.5)?;
-                let (_, key, chord) = queue[i].clone();
-                i += 1;
-                let Ok(change) = self.merge_chord(&chord, &spare) else {
-                    self.failed.insert(key, self.time);
-                    continue;
-                };
-                if scores.get(&key).is_none_or(|s| s.1 < self.time) {
-                    let score = self.score(&change);
-                    scores.insert(key, (score, self.time));
-                    if queue.get(i).is_some_and(|next| score < STILL_BEST * next.0) {
-                        let at = queue[i..].partition_point(|x| x.0 > score) + i;
-                        queue.insert(at, (score, key, chord));
-                        continue;
-                    }
-                }
-                if self.attempt(change, &chord.quads) {
-                    accepted = true;
-                    break;
-                }
-                failed.insert(key);
-                self.failed.insert(key, self.time);
-                if self.work > MOST_WORK {
-                    return Ok(());
-                }
+            match self.merge_chord(&chord).map(|merge| self.score(&merge)) {
+                Ok(score) => queue.push(Candidate { rank: [score, 0.0], key, time: self.time }),
+                Err(_) => self.refuse(key),
             }
-            if !accepted || self.work > MOST_WORK {
-                return Ok(());
-            }
+            self.work += chord.quads.len() as u64;
         }
+        while let Some(candidate) = queue.pop() {
+            progress.report(Stage::Refine, 0.5)?;
+            if self.work > self.most_work {
+                break;
+            }
+            let Key::Chord(edge) = candidate.key else { continue };
+            if !self.live.has_edge(edge) {
+                continue;
+            }
+            let chord = chord_through(&self.live.mesh, edge);
+            // A chord that has become part of another waits for the next pass, under the other's name.
+            if name(&chord) != candidate.key {
+                continue;
+            }
+            let stale = self.changed_since(&self.corners(&chord.quads), candidate.time);
+            let Ok(merge) = self.merge_chord(&chord) else {
+                self.refuse(candidate.key);
+                continue;
+            };
+            if stale {
+                let score = self.score(&merge);
+                if queue.peek().is_some_and(|next| score < STILL_BEST * next.rank[0]) {
+                    queue.push(Candidate { rank: [score, 0.0], time: self.time, ..candidate });
+                    continue;
+                }
+            }
+            let (outcome, work) = self.trial(merge, &chord.quads);
+            self.work += work;
+            self.take(candidate.key, outcome);
+        }
+        Ok(())
     }
 
     /// The quad with these two vertices at opposite corners.
-    fn quad_of_diagonal(&self, [a, b]: Key) -> Option<u32> {
-        self.stars.of(a).iter().copied().find(|&q| {
-            let quad = &self.mesh.quads[q as usize];
+    fn quad_of_diagonal(&self, [a, b]: [u32; 2]) -> Option<u32> {
+        self.live.star(a).iter().copied().find(|&q| {
+            let quad = &self.live.mesh.quads[q as usize];
             (0..4).any(|i| quad[i] == a && quad[(i + 2) % 4] == b)
         })
     }
 
-    fn collapse_diagonals(&mut self, progress: &Progress) -> Result<()> {
-        let mut failed: HashSet<Key> = HashSet::new();
-        loop {
-            let spare = self.spare();
-            let mut queue: Vec<(isize, f64, Key, u32)> = Vec::new();
-            for q in 0..self.mesh.quads.len() as u32 {
-                let quad = self.mesh.quads[q as usize];
-                for [a, b] in [[quad[0], quad[2]], [quad[1], quad[3]]] {
-                    let key = [a.min(b), a.max(b)];
-                    if on_boundary(&self.mesh, a) && on_boundary(&self.mesh, b)
-                        || failed.contains(&key)
-                        || self.failed.get(&key).is_some_and(|t| !self.changed_since(&[q], *t))
-                    {
-                        continue;
-                    }
-                    if self.work > MOST_WORK {
-                        return Ok(());
-                    }
-                    self.work += self.mesh.quads.len() as u64 / COPIES_PER_EVALUATION;
-                    if let Ok(change) =
-                        collapse(self.boundary, &self.mesh, &self.stars, &[(key, false)], &[q], &spare)
-                    {
-                        if change.irregularity <= DIAGONAL_IRREGULARITY {
-                            let quality = self.optimiser.element_quality(&self.mesh, q);
-                            queue.push((change.irregularity, (quality.size / ORDER_TIE).round(), key, q));
-                            continue;
-                        }
-                    }
-                    self.failed.insert(key, self.time);
-                }
+    /// The collapse of a diagonal of quad `q`; `None` if it is impossible or costs too much
+    /// regularity.
+    fn merge_diagonal(&self, q: u32, ends: [u32; 2]) -> Option<Merge<'_>> {
+        let mesh = &self.live.mesh;
+        if ends.iter().all(|v| mesh.vertices[*v as usize].place != Place::Interior) {
+            return None;
+        }
+        let from = mesh.quads[q as usize].iter().position(|v| *v == ends[0])?;
+        if diagonal_growth(self.boundary, &self.live, q, from).is_some_and(|g| g > DIAGONAL_IRREGULARITY) {
+            return None;
+        }
+        let merge = Merge::new(self.boundary, &self.live, &[(ends, false)], &[q], &self.least).ok()?;
+        (merge.irregularity <= DIAGONAL_IRREGULARITY).then_some(merge)
+    }
+
+    /// The place of a diagonal in the queue: what makes the mesh more regular first, then small quads.
+    fn rank_diagonal(&self, q: u32, merge: &Merge) -> [f64; 2] {
+        [-(merge.irregularity as f64), -(self.quality[q as usize].size / ORDER_TIE).round()]
+    }
+
+    /// Queues the diagonals of quad `q` that may be collapsed, but those that were `tried`.
+    fn queue_diagonals(&self, q: u32, tried: &HashSet<Key>, queue: &mut BinaryHeap<Candidate>) {
+        let quad = self.live.mesh.quads[q as usize];
+        for [a, b] in [[quad[0], quad[2]], [quad[1], quad[3]]] {
+            let ends = [a.min(b), a.max(b)];
+            let key = Key::Diagonal(ends);
+            if tried.contains(&key) || self.still_refused(key, &[q]) {
+                continue;
             }
-            queue.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
-            let mut accepted = false;
-            let start = self.time;
-            for (_, _, key, _) in queue {
-                progress.report(Stage::Refine, 0.75)?;
-                if self.work > MOST_WORK {
-                    return Ok(());
-                }
-                // Quads are renumbered by every change: find the diagonal's again, if it is still there.
-                let Some(q) = self.quad_of_diagonal(key) else { continue };
-                if self.time > start && self.changed_since(&[q], start) {
-                    continue;
-                }
-                let spare = self.spare();
-                let change = collapse(self.boundary, &self.mesh, &self.stars, &[(key, false)], &[q], &spare);
-                if let Ok(change) = change {
-                    if self.attempt(change, &[q]) {
-                        accepted = true;
-                        continue;
-                    }
-                }
-                failed.insert(key);
-                self.failed.insert(key, self.time);
-            }
-            if !accepted {
-                return Ok(());
+            if let Some(merge) = self.merge_diagonal(q, ends) {
+                queue.push(Candidate { rank: self.rank_diagonal(q, &merge), key, time: self.time });
             }
         }
     }
+
+    fn collapse_diagonals(&mut self, progress: &Progress) -> Result<()> {
+        let mut queue = BinaryHeap::new();
+        let mut tried: HashSet<Key> = HashSet::new();
+        for q in self.live.quads() {
+            self.queue_diagonals(q, &tried, &mut queue);
+        }
+        while let Some(candidate) = queue.pop() {
+            progress.report(Stage::Refine, 0.75)?;
+            if self.work > self.most_work {
+                break;
+            }
+            let Key::Diagonal(ends) = candidate.key else { continue };
+            // It may have been queued twice, and be gone since.
+            let Some(q) = self.quad_of_diagonal(ends) else { continue };
+            if tried.contains(&candidate.key) {
+                continue;
+            }
+            let Some(merge) = self.merge_diagonal(q, ends) else { continue };
+            let rank = self.rank_diagonal(q, &merge);
+            let now = Candidate { rank, time: self.time, ..candidate };
+            if rank != candidate.rank && queue.peek().is_some_and(|next| now < *next) {
+                queue.push(now);
+                continue;
+            }
+            let (outcome, work) = self.trial(merge, &[q]);
+            self.work += work;
+            tried.insert(candidate.key);
+            for q in self.take(candidate.key, outcome).unwrap_or_default() {
+                self.queue_diagonals(q, &tried, &mut queue);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A chord's name.
+fn name(chord: &Chord) -> Key {
+    Key::Chord(chord.rungs.iter().copied().min().unwrap_or_default())
 }

@@ -1,6 +1,6 @@
 //! Boundary vertices moved along their chains, as little as the tolerance allows.
 
-use super::respace::respace;
+use super::stretch::Stretch;
 use super::{place_equal_error, split_chords, subdivide};
 use crate::domain::{Boundary, BoundaryPoint, Place};
 use crate::error::{Error, Result};
@@ -33,7 +33,12 @@ fn slide_to_tolerance(mesh: &mut QuadMesh, boundary: &Boundary, error: &Boundary
             s.windows(2).map(|w| error.of_chain(chain, w[0], w[1])).fold(0.0, f64::max)
                 / error.tolerance.value
         };
-        if largest(&now) <= PLACEMENT_MARGIN || respace(boundary, error, mesh, id).is_some() {
+        if largest(&now) <= PLACEMENT_MARGIN {
+            continue;
+        }
+        let mut stretch = Stretch { curve: chain, error, ends: now.clone(), whole: true };
+        if stretch.relax() {
+            write(mesh, boundary, own, &stretch.ends);
             continue;
         }
         let wanted = aligned(&place_equal_error(chain, error, k, now[0]).positions, &now, chain.length);
@@ -47,21 +52,27 @@ fn slide_to_tolerance(mesh: &mut QuadMesh, boundary: &Boundary, error: &Boundary
             }
             last
         });
-        for (i, &(_, _, e)) in own.iter().enumerate() {
-            let v = mesh.edges[e as usize].vertices[0] as usize;
-            if let Place::Boundary(_) = mesh.vertices[v].place {
-                let s = chain.wrap(places[i]);
-                mesh.vertices[v].place = Place::Boundary(BoundaryPoint { chain: id, s });
-                mesh.vertices[v].point = chain.point(s);
-            }
-        }
-        for &(_, _, e) in own {
-            let edge = &mut mesh.edges[e as usize];
-            let [a, b] = edge.vertices.map(|v| mesh.vertices[v as usize].place);
-            edge.span = boundary.span(a, b);
-        }
+        write(mesh, boundary, own, &places);
     }
     short
+}
+
+/// Moves the starts of a chain's edges, as (chain, arc length before, edge) in order, to `places`.
+fn write(mesh: &mut QuadMesh, boundary: &Boundary, own: &[(u32, f64, u32)], places: &[f64]) {
+    for (&(id, _, e), place) in own.iter().zip(places) {
+        let chain = &boundary.chains[id as usize];
+        let v = mesh.edges[e as usize].vertices[0] as usize;
+        if let Place::Boundary(_) = mesh.vertices[v].place {
+            let s = chain.wrap(*place);
+            mesh.vertices[v].place = Place::Boundary(BoundaryPoint { chain: id, s });
+            mesh.vertices[v].point = chain.point(s);
+        }
+    }
+    for &(_, _, e) in own {
+        let edge = &mut mesh.edges[e as usize];
+        let [a, b] = edge.vertices.map(|v| mesh.vertices[v as usize].place);
+        edge.span = boundary.span(a, b);
+    }
 }
 
 /// On a closed chain the shift of `wanted` (by whole edges and laps) that lies nearest to `now`.

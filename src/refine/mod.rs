@@ -13,16 +13,21 @@
 
 mod chords;
 mod coarsen;
-mod collapse;
 mod halving;
+mod live;
 mod meet;
+mod merge;
+mod patch;
 mod pieces;
 mod placement;
 mod respace;
 mod split;
-mod stars;
+mod stretch;
 mod subdivide;
+#[cfg(test)]
+mod tests;
 mod trial;
+mod valence;
 
 pub use coarsen::coarsen;
 pub use halving::place_by_halving;

@@ -1,182 +1,119 @@
-//! Re-spacing part of a chain until every edge keeps the tolerance again, moving as little as possible.
+//! Boundary vertices near a merge moved along their chains until every edge keeps the tolerance again.
 
-use super::pieces::growth;
-use super::placement::place_equal_error;
-use crate::domain::{Boundary, BoundaryPoint, Place, Span};
-use crate::mesh::{BoundaryError, QuadMesh};
-use crate::numerics::tolerances::ORDER_TIE;
+use super::merge::Merge;
+use super::stretch::{worst_of, Stretch, ALLOWED};
+use crate::domain::{Boundary, BoundaryPoint, Place};
+use crate::mesh::BoundaryError;
 
-/// Share of the tolerance that re-spaced edges aim at: room for the optimiser to slide.
-const AIM: f64 = 0.9;
-/// An edge is left alone up to this share.
-const ALLOWED: f64 = 0.97;
-/// An edge takes over at most this multiple of its length in one round.
-const STRETCH: f64 = 1.6;
-/// Rounds for one window, and in all.
-const ROUNDS: usize = 8;
+/// Edges on either side among which room is looked for: what lies farther away would have to be moved, and
+/// optimised again, for one edge less.
+const FARTHEST: usize = 32;
 
-/// Makes the edges of `chain` keep the tolerance by moving vertices along it, near the offending
-/// edges first, along the whole chain at worst. The vertices moved; `None` if it cannot be done.
-pub(super) fn respace(
-    boundary: &Boundary,
-    error: &BoundaryError,
-    mesh: &mut QuadMesh,
+/// Edges of the merged mesh along a chain.
+struct Window<'a> {
+    stretch: Stretch<'a>,
     chain: u32,
-) -> Option<Vec<u32>> {
-    let mut edges: Vec<u32> = (0..mesh.edges.len() as u32)
-        .filter(|e| mesh.edges[*e as usize].span.is_some_and(|s| s.chain == chain))
-        .collect();
-    let span = |mesh: &QuadMesh, e: u32| mesh.edges[e as usize].span;
-    let start = |mesh: &QuadMesh, e: u32| span(mesh, e).map_or(0.0, |s| s.start);
-    edges.sort_by(|a, b| start(mesh, *a).total_cmp(&start(mesh, *b)));
-    let first = start(mesh, *edges.first()?);
-    let curve = &boundary.chains[chain as usize];
-    let closed = curve.ends.is_none();
-    let n = edges.len();
-    // Ends of the edges along the chain, from the first edge on, unwrapped.
-    let mut ends = vec![first];
-    for e in &edges {
-        let s = span(mesh, *e)?;
-        ends.push(ends[ends.len() - 1] + (s.end - s.start));
-    }
-    let ratio = |ends: &[f64], i: usize| {
-        // Twice around, so that windows may run over the seam.
-        let (a, b) = (ends[i % n] + curve.length * (i / n) as f64, ends[i % n + 1] - ends[i % n]);
-        error.of_chain(curve, a, a + b) / error.tolerance.value
-    };
-    let mut ratios: Vec<f64> = (0..n).map(|i| ratio(&ends, i)).collect();
-    let before = ends.clone();
-    let rank = |ratio: f64| (ratio / ORDER_TIE).round();
-    let mut budget = 4 * n + 16;
-    while let Some(worst) =
-        (0..n).filter(|i| ratios[*i] > ALLOWED).max_by(|a, b| rank(ratios[*a]).total_cmp(&rank(ratios[*b])))
-    {
-        let mut reach = 1;
-        loop {
-            if budget == 0 {
-                return whole_chain(boundary, error, mesh, chain, &edges, &ends);
-            }
-            budget -= 1;
-            let width = (2 * reach + 1).min(n);
-            let low = if closed {
-                (worst + n - reach.min(n / 2)) % n
-            } else {
-                worst.saturating_sub(reach).min(n - width)
-            };
-            // A closed chain's window of all edges would have to keep one vertex anyway.
-            if width == n && reach > n {
-                return whole_chain(boundary, error, mesh, chain, &edges, &ends);
-            }
-            if let Some(lengths) = share_out(curve.length, error, &ends, low, width, n, &ratio) {
-                apply(&mut ends, low, &lengths, n, curve.length);
-                for i in low..low + width {
-                    ratios[i % n] = ratio(&ends, i % n);
-                }
-                break;
-            }
-            reach += 1;
-        }
-    }
-    Some(write(boundary, mesh, chain, &edges, &before, &ends))
+    /// The ends of the edges.
+    vertices: Vec<u32>,
 }
 
-/// New lengths of the `width` edges from `low` on, all within the tolerance; `None` if they have no room.
-fn share_out(
-    whole: f64,
-    error: &BoundaryError,
-    ends: &[f64],
-    low: usize,
-    width: usize,
-    n: usize,
-    ratio: &dyn Fn(&[f64], usize) -> f64,
-) -> Option<Vec<f64>> {
-    let exponent = 1.0 / growth(error);
-    let mut trial = ends.to_vec();
-    let mut lengths: Vec<f64> = (low..low + width).map(|i| ends[i % n + 1] - ends[i % n]).collect();
-    let total: f64 = lengths.iter().sum();
-    for _ in 0..ROUNDS {
-        let ratios: Vec<f64> = (low..low + width).map(|i| ratio(&trial, i % n)).collect();
-        if ratios.iter().all(|r| *r <= ALLOWED) {
-            return Some(lengths);
+/// Makes the boundary edges of the quads at the merged vertices, and the next ones, keep the tolerance by moving vertices along their chains,
+/// near the offending edges first, along the whole of a short chain at worst. The vertices moved; `None`
+/// if it cannot be done.
+pub(super) fn respace(boundary: &Boundary, error: &BoundaryError, merge: &mut Merge) -> Option<Vec<u32>> {
+    let mut edges: Vec<[u32; 2]> = Vec::new();
+    let quads = merge.touched.iter().flat_map(|v| merge.star(*v));
+    let mut near: Vec<u32> = quads.flat_map(|q| merge.corners(*q)).collect();
+    near.sort_unstable();
+    near.dedup();
+    near.retain(|v| merge.vertex(*v).place != Place::Interior);
+    for v in near {
+        let [before, after] = merge.along_loop(v)?;
+        edges.extend([[before, v], [v, after]]);
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    let ratio = |merge: &Merge, [a, b]: [u32; 2]| {
+        let span = boundary.span(merge.vertex(a).place, merge.vertex(b).place)?;
+        Some(error.ratio(boundary, span))
+    };
+    let mut ratios = edges.iter().map(|e| ratio(merge, *e)).collect::<Option<Vec<f64>>>()?;
+    let mut all_moved: Vec<u32> = Vec::new();
+    while let Some(worst) = worst_of(&ratios) {
+        let (window, at) = Window::around(boundary, error, merge, edges[worst])?;
+        let ends = window.stretch.make_room(at)?;
+        let moved = window.write(boundary, merge, &ends);
+        for (ratio_of, edge) in ratios.iter_mut().zip(&edges) {
+            if edge.iter().any(|v| moved.contains(v)) {
+                *ratio_of = ratio(merge, *edge)?;
+            }
         }
-        let room: Vec<f64> =
-            ratios.iter().map(|r| (AIM / r.max(1e-9)).powf(exponent).clamp(0.3, STRETCH)).collect();
-        let shrunk: f64 = lengths.iter().zip(&room).map(|(l, r)| l * r.min(1.0)).sum();
-        let slack: f64 = lengths.iter().zip(&room).map(|(l, r)| l * (r - 1.0).max(0.0)).sum();
-        let missing = total - shrunk;
-        if missing > slack {
+        // The whole chain's placement may leave an edge between what is allowed and the tolerance.
+        if ratios[worst] > 1.0 {
             return None;
         }
-        let share = missing / slack;
-        for (l, r) in lengths.iter_mut().zip(&room) {
-            *l *= if *r > 1.0 { 1.0 + share * (r - 1.0) } else { *r };
-        }
-        apply(&mut trial, low, &lengths, n, whole);
+        ratios[worst] = ratios[worst].min(ALLOWED);
+        all_moved.extend(moved);
     }
-    None
+    Some(all_moved)
 }
 
-/// Sets the edges from `low` on to `lengths`, whose sum is what it was.
-fn apply(ends: &mut [f64], low: usize, lengths: &[f64], n: usize, whole: f64) {
-    let mut at = ends[low];
-    for (k, length) in lengths.iter().enumerate().take(lengths.len() - 1) {
-        at += length;
-        let i = low + k + 1;
-        if i < n {
-            ends[i] = at;
-        } else {
-            // Over the seam: the first entry and the last are the same vertex.
-            ends[i - n] = at - whole;
-            if i == n {
-                ends[n] = at;
+impl<'a> Window<'a> {
+    /// The edges around `edge`, and its index among them.
+    fn around(
+        boundary: &'a Boundary,
+        error: &'a BoundaryError,
+        merge: &Merge,
+        edge: [u32; 2],
+    ) -> Option<(Self, usize)> {
+        let chain = boundary.span(merge.vertex(edge[0]).place, merge.vertex(edge[1]).place)?.chain;
+        let ends_chain = |v: u32| matches!(merge.vertex(v).place, Place::Junction(_));
+        let mut vertices = vec![edge[0]];
+        while vertices.len() <= FARTHEST && !ends_chain(vertices[vertices.len() - 1]) {
+            let [before, _] = merge.along_loop(vertices[vertices.len() - 1])?;
+            if before == edge[1] {
+                break;
+            }
+            vertices.push(before);
+        }
+        vertices.reverse();
+        let at = vertices.len() - 1;
+        vertices.push(edge[1]);
+        let mut last = edge[1];
+        while vertices.len() < at + FARTHEST + 2 && !ends_chain(last) && last != vertices[0] {
+            [_, last] = merge.along_loop(last)?;
+            vertices.push(last);
+        }
+        let whole = last == vertices[0] || (ends_chain(vertices[0]) && ends_chain(last));
+        let mut ends: Vec<f64> = Vec::with_capacity(vertices.len());
+        for pair in vertices.windows(2) {
+            let span = boundary.span(merge.vertex(pair[0]).place, merge.vertex(pair[1]).place)?;
+            let start = ends.last().copied().unwrap_or(span.start);
+            if ends.is_empty() {
+                ends.push(start);
+            }
+            ends.push(start + (span.end - span.start));
+        }
+        let stretch = Stretch { curve: &boundary.chains[chain as usize], error, ends, whole };
+        Some((Window { stretch, chain, vertices }, at))
+    }
+
+    /// Moves the vertices to `ends`; those that were elsewhere before.
+    fn write(&self, boundary: &Boundary, merge: &mut Merge, ends: &[f64]) -> Vec<u32> {
+        let curve = &boundary.chains[self.chain as usize];
+        let mut moved = Vec::new();
+        for (i, v) in self.vertices.iter().enumerate() {
+            let mut vertex = merge.vertex(*v);
+            if let Place::Boundary(p) = &mut vertex.place {
+                // A closed chain's last vertex is its first, a lap later.
+                if ends[i] != self.stretch.ends[i] && !moved.contains(v) {
+                    *p = BoundaryPoint { chain: self.chain, s: curve.wrap(ends[i]) };
+                    vertex.point = curve.point(p.s);
+                    merge.set_vertex(*v, vertex);
+                    moved.push(*v);
+                }
             }
         }
+        moved
     }
-}
-
-/// The last resort: all vertices of the chain by equal error.
-fn whole_chain(
-    boundary: &Boundary,
-    error: &BoundaryError,
-    mesh: &mut QuadMesh,
-    chain: u32,
-    edges: &[u32],
-    ends: &[f64],
-) -> Option<Vec<u32>> {
-    let curve = &boundary.chains[chain as usize];
-    let placement = place_equal_error(curve, error, edges.len(), ends[0]);
-    if placement.largest > 1.0 {
-        return None;
-    }
-    Some(write(boundary, mesh, chain, edges, &[], &placement.positions))
-}
-
-/// Moves the vertices of the chain's edges to `ends`; those that were elsewhere `before` (all, if empty).
-fn write(
-    boundary: &Boundary,
-    mesh: &mut QuadMesh,
-    chain: u32,
-    edges: &[u32],
-    before: &[f64],
-    ends: &[f64],
-) -> Vec<u32> {
-    let curve = &boundary.chains[chain as usize];
-    let mut moved = Vec::new();
-    for (i, e) in edges.iter().enumerate() {
-        if before.get(i) == Some(&ends[i]) && before.get(i + 1) == Some(&ends[i + 1]) {
-            continue;
-        }
-        let start = if curve.ends.is_none() { curve.wrap(ends[i]) } else { ends[i] };
-        mesh.edges[*e as usize].span = Some(Span { chain, start, end: start + (ends[i + 1] - ends[i]) });
-        let v = mesh.edges[*e as usize].vertices[0];
-        let vertex = &mut mesh.vertices[v as usize];
-        if let Place::Boundary(p) = &mut vertex.place {
-            if p.s != start {
-                *p = BoundaryPoint { chain, s: start };
-                vertex.point = curve.point(start);
-                moved.push(v);
-            }
-        }
-    }
-    moved
 }
