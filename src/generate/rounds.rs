@@ -24,6 +24,10 @@ const TOO_LONG: f64 = 2.5;
 const START_GRID: f64 = 1.0 / 1024.0;
 /// Keeps lengths of simple ratio to the diagonal away from powers of two.
 const OFF_POWERS: f64 = 1.37;
+/// Quads above which strips finer than wanted are ended before anything is optimised, ...
+const LARGE: usize = 1500;
+/// ... if no more than this share of the quads is left.
+const WORTH: f64 = 0.7;
 /// Most elements, as a multiple of the first round's, before another layout is tried.
 const MOST_GROWTH: usize = 3;
 
@@ -41,6 +45,10 @@ pub(super) fn refine_and_smooth(
     let optimiser = Optimiser::new(boundary, options.order, Some(*tolerance));
     let mut mesh = start(boundary, layout)?;
     note(stages, &optimiser, &mesh, "layout");
+    if mesh.quads.len() > LARGE {
+        mesh = thinner(mesh, boundary, sizes);
+        note(stages, &optimiser, &mesh, "thin");
+    }
     if stages.attempts > 1 {
         mesh = watch.run(stages, Stage::Refine, |_| divide_long(mesh, boundary, sizes, options.order))?;
     }
@@ -69,7 +77,7 @@ pub(super) fn refine_and_smooth(
             for (e, marked) in marked.iter_mut().enumerate() {
                 *marked = optimiser.error_ratio(&mesh, e as u32) > 1.0;
             }
-        } else {
+        } else if mesh.quads.len() <= LARGE {
             let inverted = |q: &usize| quality.elements[*q].jacobian_ratio <= 0.0;
             for e in (0..mesh.quads.len()).filter(inverted).flat_map(|q| mesh.quad_edges[q]) {
                 marked[e as usize] = true;
@@ -94,9 +102,10 @@ pub(super) fn refine_and_smooth(
         let at = mesh.vertices[mesh.quads[worst][0] as usize].point;
         return Err(Error::InvalidElement { jacobian: quality.min_scaled_jacobian, at });
     }
+    let floor = options.quality_floor * scaled_jacobian_ceiling(boundary);
+    let large = mesh.quads.len() > LARGE;
     if options.subdivision == Subdivision::EqualError && watch.work <= MOST_WORK {
         let size = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
-        let floor = options.quality_floor * scaled_jacobian_ceiling(boundary);
         let limits = Limits { size, ..Limits::new(floor) };
         let progress = watch.coarsening();
         mesh = watch
@@ -114,6 +123,10 @@ pub(super) fn refine_and_smooth(
             mesh = smoother;
             note(stages, &optimiser, &mesh, "smooth");
         }
+        if large {
+            watch.work += watch.run(stages, Stage::Smooth, |_| Ok(optimiser.lift(&mut mesh, floor)))?;
+            note(stages, &optimiser, &mesh, "lift");
+        }
     }
     if mesh.quads.len() > options.max_elements {
         let reason =
@@ -121,6 +134,16 @@ pub(super) fn refine_and_smooth(
         return Err(Error::Layout { reason, at: None });
     }
     Ok(mesh)
+}
+
+/// The mesh with strips ended that are much finer than wanted, if that pays: it costs irregular vertices.
+fn thinner(mesh: QuadMesh, boundary: &Boundary, sizes: &ElementSize) -> QuadMesh {
+    let thin = refine::thin(mesh.clone(), boundary, &|p| sizes.at(p));
+    if (thin.quads.len() as f64) < WORTH * mesh.quads.len() as f64 {
+        thin
+    } else {
+        mesh
+    }
 }
 
 /// For later attempts: where the integer lengths left edges of many times the wanted size, divides their

@@ -33,7 +33,8 @@ const DIAGONAL_IRREGULARITY: isize = 2;
 /// Most element evaluations of one coarsening (a few microseconds each at order 5), in all and for each
 /// quad: what is coarse enough by then is taken.
 const MOST_WORK: u64 = 1_500_000;
-const MOST_WORK_PER_QUAD: u64 = 1500;
+const MOST_WORK_PER_QUAD: u64 = 1200;
+const MOST_WORK_AT_ALL: u64 = 8_000_000;
 
 /// State of a coarsening.
 struct Coarsening<'a> {
@@ -134,7 +135,7 @@ pub fn coarsen(
     let holds = quality.min_scaled_jacobian >= limits.scaled_jacobian
         && quality.min_jacobian_ratio >= limits.jacobian_ratio
         && largest <= limits.size;
-    let most_work = MOST_WORK.max(MOST_WORK_PER_QUAD * mesh.quads.len() as u64);
+    let most_work = (MOST_WORK_PER_QUAD * mesh.quads.len() as u64).clamp(MOST_WORK, MOST_WORK_AT_ALL);
     let mut run = Coarsening {
         boundary,
         optimiser,

@@ -26,6 +26,7 @@ mod stretch;
 mod subdivide;
 #[cfg(test)]
 mod tests;
+mod thin;
 mod trial;
 mod valence;
 
@@ -36,4 +37,5 @@ pub use pieces::least_pieces;
 pub use placement::{place_equal_error, Placement};
 pub use split::split_chords;
 pub use subdivide::subdivide;
+pub use thin::thin;
 pub use trial::Limits;

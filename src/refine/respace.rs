@@ -9,6 +9,9 @@ use crate::mesh::BoundaryError;
 /// optimised again, for one edge less.
 const FARTHEST: usize = 32;
 
+/// Windows tried, for each edge that may break the tolerance: windows that take room from each other must end.
+const TRIES_PER_EDGE: usize = 4;
+
 /// Edges of the merged mesh along a chain.
 struct Window<'a> {
     stretch: Stretch<'a>,
@@ -39,21 +42,29 @@ pub(super) fn respace(boundary: &Boundary, error: &BoundaryError, merge: &mut Me
     };
     let mut ratios = edges.iter().map(|e| ratio(merge, *e)).collect::<Option<Vec<f64>>>()?;
     let mut all_moved: Vec<u32> = Vec::new();
+    let mut tries = TRIES_PER_EDGE * edges.len();
     while let Some(worst) = worst_of(&ratios) {
         let (window, at) = Window::around(boundary, error, merge, edges[worst])?;
-        let ends = window.stretch.make_room(at)?;
-        let moved = window.write(boundary, merge, &ends);
+        let room = window.stretch.make_room(at)?;
+        let moved = window.write(boundary, merge, &room.ends);
         for (ratio_of, edge) in ratios.iter_mut().zip(&edges) {
-            if edge.iter().any(|v| moved.contains(v)) {
+            let placed_anew = room.all && edge.iter().all(|v| window.vertices.contains(v));
+            if placed_anew || edge.iter().any(|v| moved.contains(v)) {
                 *ratio_of = ratio(merge, *edge)?;
             }
+            // The whole chain's placement may leave edges between what is allowed and the tolerance, for good.
+            if placed_anew && *ratio_of <= 1.0 {
+                *ratio_of = ratio_of.min(ALLOWED);
+            }
         }
-        // The whole chain's placement may leave an edge between what is allowed and the tolerance.
-        if ratios[worst] > 1.0 {
+        if ratios[worst] > ALLOWED {
             return None;
         }
-        ratios[worst] = ratios[worst].min(ALLOWED);
         all_moved.extend(moved);
+        tries -= 1;
+        if tries == 0 {
+            return None;
+        }
     }
     Some(all_moved)
 }

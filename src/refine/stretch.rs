@@ -27,6 +27,13 @@ pub(super) struct Stretch<'a> {
     pub whole: bool,
 }
 
+/// New ends of a stretch's edges.
+pub(super) struct Room {
+    pub ends: Vec<f64>,
+    /// The whole chain was placed anew: every edge keeps the tolerance, maybe with less room than usual.
+    pub all: bool,
+}
+
 /// The largest of `ratios` above what is allowed; of those that differ by rounding the last.
 pub(super) fn worst_of(ratios: &[f64]) -> Option<usize> {
     let rank = |i: &usize| (ratios[*i] / ORDER_TIE).round();
@@ -39,15 +46,14 @@ impl Stretch<'_> {
     pub fn relax(&mut self) -> bool {
         let mut ratios: Vec<f64> = (0..self.len()).map(|i| self.ratio(&self.ends, i)).collect();
         while let Some(worst) = worst_of(&ratios) {
-            let Some(ends) = self.make_room(worst) else { return false };
+            let Some(Room { ends, all }) = self.make_room(worst) else { return false };
             for i in 0..self.len() {
                 if ends[i] != self.ends[i] || ends[i + 1] != self.ends[i + 1] {
                     ratios[i] = self.ratio(&ends, i);
                 }
             }
             self.ends = ends;
-            // The whole chain was placed anew: it keeps the tolerance, with less room.
-            if ratios[worst] > ALLOWED {
+            if all {
                 return true;
             }
         }
@@ -70,7 +76,7 @@ impl Stretch<'_> {
     }
 
     /// New ends with which edge `at` keeps the tolerance, and no edge near it breaks it.
-    pub fn make_room(&self, at: usize) -> Option<Vec<f64>> {
+    pub fn make_room(&self, at: usize) -> Option<Room> {
         let n = self.len();
         let mut reach = 1;
         loop {
@@ -83,10 +89,10 @@ impl Stretch<'_> {
             if let Some(lengths) = self.share_out(low, width) {
                 let mut ends = self.ends.clone();
                 self.apply(&mut ends, low, &lengths);
-                return Some(ends);
+                return Some(Room { ends, all: false });
             }
             if width == n {
-                return self.whole_chain();
+                return self.whole_chain().map(|ends| Room { ends, all: true });
             }
             // Wide windows grow by a quarter each: all together cost some times the last.
             reach += 1 + reach / 4;

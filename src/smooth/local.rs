@@ -5,7 +5,7 @@
 //! around them are untangled by themselves, what lies around them fixed, with more rings in turn. Parts that do
 //! not touch are problems of their own: each takes the steps that it needs and no more.
 
-use super::optimiser::{Effort, MOST_WORK};
+use super::optimiser::{Effort, Schedule, MOST_WORK};
 use super::problem::Problem;
 use super::untangle::untangle;
 use crate::mesh::{Edge, QuadMesh, Vertex};
@@ -20,6 +20,8 @@ const MOST: f64 = 0.7;
 pub(super) trait Elements {
     /// The quads `active` as a function of what may move.
     fn problem<'a>(&'a self, mesh: &QuadMesh, active: &[u32]) -> Problem<'a>;
+    /// The schedule for so many of them.
+    fn schedule(&self, effort: Effort, quads: usize) -> Schedule;
     /// Whether a quad is inverted.
     fn inverted(&self, mesh: &QuadMesh, quad: u32) -> bool;
 }
@@ -32,10 +34,7 @@ pub(super) fn untangle_locally(
     effort: Effort,
     work: &mut u64,
 ) -> usize {
-    let mut around = vec![Vec::new(); mesh.vertices.len()];
-    for (q, quad) in mesh.quads.iter().enumerate() {
-        quad.iter().for_each(|v| around[*v as usize].push(q as u32));
-    }
+    let around = quads_around(mesh);
     let all: Vec<u32> = (0..mesh.quads.len() as u32).collect();
     let mut inverted = among(elements, mesh, &all);
     for rings in RINGS {
@@ -53,7 +52,7 @@ pub(super) fn untangle_locally(
             }
             let before = among(elements, mesh, &part);
             let saved = Saved::of(mesh, &part);
-            let schedule = effort.schedule_for(part.len());
+            let schedule = elements.schedule(effort, part.len());
             let mut problem = elements.problem(mesh, &part);
             untangle(&mut problem, &mut Default::default(), &schedule, work);
             problem.store(mesh);
@@ -75,13 +74,13 @@ fn among(elements: &impl Elements, mesh: &QuadMesh, quads: &[u32]) -> Vec<u32> {
 }
 
 /// Vertices and edges of some quads, as they were.
-struct Saved {
+pub(super) struct Saved {
     vertices: Vec<(u32, Vertex)>,
     edges: Vec<(u32, Edge)>,
 }
 
 impl Saved {
-    fn of(mesh: &QuadMesh, quads: &[u32]) -> Self {
+    pub fn of(mesh: &QuadMesh, quads: &[u32]) -> Self {
         let vertices = quads.iter().flat_map(|q| mesh.quads[*q as usize]);
         let edges = quads.iter().flat_map(|q| mesh.quad_edges[*q as usize]);
         Saved {
@@ -90,14 +89,23 @@ impl Saved {
         }
     }
 
-    fn restore(self, mesh: &mut QuadMesh) {
+    pub fn restore(self, mesh: &mut QuadMesh) {
         self.vertices.into_iter().for_each(|(v, vertex)| mesh.vertices[v as usize] = vertex);
         self.edges.into_iter().for_each(|(e, edge)| mesh.edges[e as usize] = edge);
     }
 }
 
+/// The quads at each vertex.
+pub(super) fn quads_around(mesh: &QuadMesh) -> Vec<Vec<u32>> {
+    let mut around = vec![Vec::new(); mesh.vertices.len()];
+    for (q, quad) in mesh.quads.iter().enumerate() {
+        quad.iter().for_each(|v| around[*v as usize].push(q as u32));
+    }
+    around
+}
+
 /// `quads` and `rings` rings of quads around them, ascending.
-fn grow(mesh: &QuadMesh, around: &[Vec<u32>], quads: &[u32], rings: usize) -> Vec<u32> {
+pub(super) fn grow(mesh: &QuadMesh, around: &[Vec<u32>], quads: &[u32], rings: usize) -> Vec<u32> {
     let mut taken = vec![false; mesh.quads.len()];
     let mut all = quads.to_vec();
     all.iter().for_each(|q| taken[*q as usize] = true);
@@ -120,7 +128,7 @@ fn grow(mesh: &QuadMesh, around: &[Vec<u32>], quads: &[u32], rings: usize) -> Ve
 }
 
 /// The parts of `quads` that are connected through edges, each ascending.
-fn parts(mesh: &QuadMesh, quads: &[u32]) -> Vec<Vec<u32>> {
+pub(super) fn parts(mesh: &QuadMesh, quads: &[u32]) -> Vec<Vec<u32>> {
     let mut waiting = vec![false; mesh.quads.len()];
     quads.iter().for_each(|q| waiting[*q as usize] = true);
     let mut parts = Vec::new();

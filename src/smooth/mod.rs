@@ -18,6 +18,7 @@
 mod edge_error;
 mod kernel;
 mod laplacian;
+mod lift;
 mod local;
 mod minimiser;
 mod optimiser;

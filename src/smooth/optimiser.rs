@@ -1,6 +1,7 @@
 //! The one optimiser: untangles if it must, then raises the power of the shape energy.
 
 use super::kernel::Measure;
+use super::lift::lift;
 use super::local::{untangle_locally, Elements};
 use super::minimiser::{Lbfgs, Limits};
 use super::problem::Problem;
@@ -71,11 +72,17 @@ pub(super) struct Schedule {
     pub untangle_steps: usize,
     /// Least share by which untangling lowers its bound in a round: less is surer, more is faster.
     pub untangle_decrease: f64,
+    /// Whether untangling goes on where it is slow: it mostly gets there.
+    pub patient: bool,
 }
 
 /// Quads up to which an optimisation may take all its steps; on larger meshes steps are fewer, so that
 /// the work grows no faster than the mesh.
 const FULL_STEPS: usize = 1200;
+/// How much cheaper an evaluation of straight-sided elements is: so much larger meshes may take all steps.
+const CHEAPER: usize = 8;
+/// Steps of an untangling round for them.
+const STRAIGHT_STEPS: usize = 200;
 /// Fewest steps of a round.
 const LEAST_STEPS: usize = 12;
 
@@ -92,6 +99,14 @@ impl Effort {
         }
     }
 
+    /// The schedule for so many straight-sided quads, which cost little: patient.
+    pub(super) fn schedule_for_straight(self, quads: usize) -> Schedule {
+        let plain = self.schedule();
+        let scaled =
+            (STRAIGHT_STEPS * FULL_STEPS * CHEAPER / quads.max(FULL_STEPS * CHEAPER)).max(LEAST_STEPS);
+        Schedule { untangle_steps: scaled, untangle_rounds: plain.untangle_rounds, patient: true, ..plain }
+    }
+
     fn schedule(self) -> Schedule {
         match self {
             Effort::Quick => Schedule {
@@ -103,6 +118,7 @@ impl Effort {
                 untangle_rounds: 6,
                 untangle_steps: 25,
                 untangle_decrease: 0.5,
+                patient: false,
             },
             Effort::Full => Schedule {
                 powers: &[2, 4, 8, 8],
@@ -121,6 +137,7 @@ impl Effort {
                 untangle_rounds: 20,
                 untangle_steps: 50,
                 untangle_decrease: 0.1,
+                patient: false,
             },
         }
     }
@@ -160,6 +177,10 @@ struct Curved<'a> {
 impl Elements for Curved<'_> {
     fn problem<'b>(&'b self, mesh: &QuadMesh, active: &[u32]) -> Problem<'b> {
         self.optimiser.problem(self.reference, mesh, Some(active), false)
+    }
+
+    fn schedule(&self, effort: Effort, quads: usize) -> Schedule {
+        effort.schedule_for(quads)
     }
 
     fn inverted(&self, mesh: &QuadMesh, quad: u32) -> bool {
@@ -231,6 +252,13 @@ impl<'a> Optimiser<'a> {
             error_ratio: state.error_ratio,
             work,
         }
+    }
+
+    /// Optimises around the elements whose scaled Jacobian is below `floor`, each group with some rings by
+    /// itself, as often as that helps: on large meshes, on which the whole cannot take all steps. What
+    /// gets worse is undone. The work spent.
+    pub fn lift(&self, mesh: &mut QuadMesh, floor: f64) -> u64 {
+        lift(self, mesh, floor)
     }
 
     /// `mesh` as a function of what may move.

@@ -8,7 +8,7 @@
 use super::kernel::Measure;
 use super::local::{untangle_locally, Elements};
 use super::minimiser::{Lbfgs, Limits};
-use super::optimiser::Effort;
+use super::optimiser::{Effort, Schedule};
 use super::problem::Problem;
 use super::reference::Reference;
 use super::untangle::untangle;
@@ -20,8 +20,6 @@ use crate::numerics::cross;
 const POWERS: [u32; 2] = [2, 4];
 /// Step bound of the minimiser, in natural lengths.
 const REACH: f64 = 0.5;
-/// How much cheaper an evaluation of straight-sided elements is: so much larger meshes may take all steps.
-const CHEAPER: usize = 8;
 
 /// Straight-sided elements; the boundary does not slide.
 struct Straight<'a> {
@@ -32,6 +30,10 @@ struct Straight<'a> {
 impl Elements for Straight<'_> {
     fn problem<'a>(&'a self, mesh: &QuadMesh, active: &[u32]) -> Problem<'a> {
         Problem::new(self.boundary, self.reference, None, mesh, Some(active), false)
+    }
+
+    fn schedule(&self, effort: Effort, quads: usize) -> Schedule {
+        effort.schedule_for_straight(quads)
     }
 
     fn inverted(&self, mesh: &QuadMesh, quad: u32) -> bool {
@@ -56,7 +58,7 @@ pub(super) fn untangle_straight(
     let mut straight = mesh.clone();
     straight.edges.iter_mut().for_each(|e| e.bubbles.clear());
     let left = untangle_locally(&elements, &mut straight, effort, work);
-    let schedule = effort.schedule_for(mesh.quads.len() / CHEAPER);
+    let schedule = effort.schedule_for_straight(mesh.quads.len());
     let mut problem = Problem::new(boundary, linear, None, &straight, None, false);
     let mut lbfgs = Lbfgs::default();
     if left > 0 && !untangle(&mut problem, &mut lbfgs, &schedule, work) {

@@ -46,7 +46,7 @@ pub(super) fn untangle(
         // Far from valid and not getting there in time: what a merge inverts for good.
         if round == 0 {
             first = least;
-        } else if round >= 2 && least < FAR {
+        } else if !schedule.patient && round >= 2 && least < FAR {
             let rate = (least - first) / round as f64;
             if -least > PATIENCE * rate * (rounds - round - 1) as f64 {
                 break;

@@ -1,0 +1,33 @@
+//! Domains on which something once went wrong, by what it was.
+
+use quadrel::stages::Stages;
+use quadrel::{generate, input, Options};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Elements of the mesh of a domain of the collection, and the time it took.
+fn mesh(file: &str) -> (usize, Duration) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/domains").join(file);
+    let domain = input::read(&path, None).unwrap().domain;
+    let start = Instant::now();
+    let mesh = generate(&domain, &Options::default(), &mut Stages::default());
+    let elements = mesh.unwrap_or_else(|e| panic!("{file}: {e}")).elements.len();
+    (elements, start.elapsed())
+}
+
+/// Two windows of one closed chain took room from each other without end: one placed the whole chain from its
+/// first vertex, the other from another.
+#[test]
+fn respacing_ends_on_a_short_closed_chain() {
+    let (elements, time) = mesh("glyphs/NotoSerifDevanagari/u0919-2.svg");
+    assert!(elements <= 20, "{elements} elements");
+    assert!(time < Duration::from_secs(20), "{time:?}");
+}
+
+/// Thousands of layout quads of which hundreds are inverted: untangled with straight sides first, each tangled part
+/// by itself.
+#[test]
+fn tangles_of_a_coast_come_undone() {
+    let (elements, _) = mesh("coast/sea-aeolian.svg");
+    assert!(elements <= 1400, "{elements} elements");
+}
