@@ -103,7 +103,6 @@ pub(super) fn refine_and_smooth(
         return Err(Error::InvalidElement { jacobian: quality.min_scaled_jacobian, at });
     }
     let floor = options.quality_floor * scaled_jacobian_ceiling(boundary);
-    let large = mesh.quads.len() > LARGE;
     if options.subdivision == Subdivision::EqualError && watch.work <= MOST_WORK {
         let size = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
         let limits = Limits { size, ..Limits::new(floor) };
@@ -111,10 +110,15 @@ pub(super) fn refine_and_smooth(
         mesh = watch
             .run(stages, Stage::Refine, |_| refine::coarsen(mesh, boundary, &optimiser, limits, &progress))?;
         note(stages, &optimiser, &mesh, "coarsen");
+        let mut before = optimiser.quality(&mesh);
+        if before.min_scaled_jacobian < floor {
+            watch.work += watch.run(stages, Stage::Smooth, |_| Ok(optimiser.lift(&mut mesh, floor)))?;
+            note(stages, &optimiser, &mesh, "lift");
+            before = optimiser.quality(&mesh);
+        }
         // Kept only if nothing that holds is lost.
-        let before = optimiser.quality(&mesh);
         let mut smoother = mesh.clone();
-        watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut smoother, None, Effort::Full)))?;
+        watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut smoother, None, Effort::Final)))?;
         let after = optimiser.quality(&smoother);
         if after.valid()
             && after.error_ratio <= before.error_ratio.max(1.0)
@@ -122,10 +126,6 @@ pub(super) fn refine_and_smooth(
         {
             mesh = smoother;
             note(stages, &optimiser, &mesh, "smooth");
-        }
-        if large {
-            watch.work += watch.run(stages, Stage::Smooth, |_| Ok(optimiser.lift(&mut mesh, floor)))?;
-            note(stages, &optimiser, &mesh, "lift");
         }
     }
     if mesh.quads.len() > options.max_elements {

@@ -165,10 +165,13 @@ pub const ARC_LENGTH_MATCH: f64 = 1e-13;
 /// Relative difference of area and of its moments below which two loops that meet are the same.
 pub const SAME_MOMENTS: f64 = 1e-6;
 
-/// Grid on which the optimiser's positions and shapes stay, relative to the local edge length: one step makes of
-/// the input's rounding errors (1e-16, far from the caller's origin 1e-13) a hundred times as much, the next
-/// steps would go on; and no quality or boundary error notices 6e-5. 2^-14.
-pub const UNKNOWN_GRID: f64 = 1.0 / 16_384.0;
+/// Grid on which the optimiser's positions and shapes stay while decisions hang on them, relative to the local
+/// edge length: one step makes of the input's rounding errors (1e-16, far from the caller's origin 1e-13) a
+/// hundred times as much, the next steps would go on; and a thousandth of an edge decides nothing. 2^-10.
+pub const DECISION_GRID: f64 = 1.0 / 1024.0;
+
+/// The same for the mesh that is kept. 2^-18.
+pub const FINAL_GRID: f64 = 1.0 / 262_144.0;
 
 /// Sizes and errors that differ by less than this share are equally large when changes of a mesh are put
 /// in order: in symmetric domains many are equal up to rounding.

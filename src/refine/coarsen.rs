@@ -34,7 +34,7 @@ const DIAGONAL_IRREGULARITY: isize = 2;
 /// quad: what is coarse enough by then is taken.
 const MOST_WORK: u64 = 1_500_000;
 const MOST_WORK_PER_QUAD: u64 = 1200;
-const MOST_WORK_AT_ALL: u64 = 8_000_000;
+const MOST_WORK_AT_ALL: u64 = 3_500_000;
 
 /// State of a coarsening.
 struct Coarsening<'a> {

@@ -2,8 +2,6 @@
 //!
 //! Reference: J. Nocedal, S. Wright, *Numerical Optimization*, 2006, §7.2 (two-loop recursion).
 
-use crate::numerics::tolerances::UNKNOWN_GRID;
-
 /// Pairs kept.
 const MEMORY: usize = 10;
 /// Sufficient decrease (Armijo).
@@ -67,10 +65,10 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
-/// Spacing of the grid for a variable that moves along edges whose squared length is `squared`: a power of two,
-/// so that noise in the length leaves it the same.
-pub(super) fn grid_cell(squared: f64) -> f64 {
-    UNKNOWN_GRID * (0.5 * (OFF_POWERS * squared).log2()).floor().exp2()
+/// Spacing of the grid for a variable that moves along edges whose squared length is `squared`, about `grid` of
+/// their length: a power of two, so that noise in the length leaves it the same.
+pub(super) fn grid_cell(squared: f64, grid: f64) -> f64 {
+    grid * (0.5 * (OFF_POWERS * squared).log2()).floor().exp2()
 }
 
 /// Rounded to the grid. Without it the rounding errors of the input, about doubled by every iteration, would

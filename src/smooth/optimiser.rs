@@ -11,14 +11,17 @@ use super::straight::untangle_straight;
 use super::untangle::untangle;
 use crate::domain::Boundary;
 use crate::mesh::{BoundaryError, BoundaryTolerance, QuadMesh};
+use crate::numerics::tolerances::{DECISION_GRID, FINAL_GRID};
 
 /// How much work an optimisation may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effort {
     /// For a trial that may be rolled back: valid and fair.
     Quick,
-    /// For a mesh to be kept.
+    /// For a mesh that is worked on.
     Full,
+    /// For a mesh to be kept, from a valid one: the same on a finer grid.
+    Final,
 }
 
 /// What an optimisation left.
@@ -45,8 +48,8 @@ const RESCUES: usize = 3;
 const WORKED_OFF: f64 = 0.9;
 /// Weight of the mean scaled Jacobian against the least when rounds are compared.
 const MEAN_WEIGHT: f64 = 0.2;
-/// Work after which no further way of untangling is tried.
-pub(super) const MOST_WORK: u64 = 2_000_000;
+/// Work after which no further way of untangling is tried, and for improving.
+pub(super) const MOST_WORK: u64 = 1_500_000;
 /// Sweeps of the relaxation that restarts a hopeless mesh.
 const FLATTEN_SWEEPS: usize = 200;
 
@@ -74,6 +77,8 @@ pub(super) struct Schedule {
     pub untangle_decrease: f64,
     /// Whether untangling goes on where it is slow: it mostly gets there.
     pub patient: bool,
+    /// Spacing of the grid that unknowns stay on, in edge lengths.
+    grid: f64,
 }
 
 /// Quads up to which an optimisation may take all its steps; on larger meshes steps are fewer, so that
@@ -119,8 +124,9 @@ impl Effort {
                 untangle_steps: 25,
                 untangle_decrease: 0.5,
                 patient: false,
+                grid: DECISION_GRID,
             },
-            Effort::Full => Schedule {
+            Effort::Full | Effort::Final => Schedule {
                 powers: &[2, 4, 8, 8],
                 steps: 60,
                 progress: 1e-4,
@@ -138,6 +144,7 @@ impl Effort {
                 untangle_steps: 50,
                 untangle_decrease: 0.1,
                 patient: false,
+                grid: if self == Effort::Final { FINAL_GRID } else { DECISION_GRID },
             },
         }
     }
@@ -320,6 +327,7 @@ impl<'a> Optimiser<'a> {
             valid = problem.least_jacobian() > 0.0;
         }
         if valid {
+            problem.grid = schedule.grid;
             self.improve(&mut problem, &mut lbfgs, &schedule, work);
         }
         problem.store(mesh);
@@ -333,6 +341,7 @@ impl<'a> Optimiser<'a> {
         let rank =
             |p: &Problem| (p.error_ratio.max(1.0), -p.scaled_jacobian - MEAN_WEIGHT * p.mean_scaled_jacobian);
         let mut best = (rank(problem), problem.unknowns.clone());
+        let start = *work;
         let limits = Limits { steps: schedule.steps, progress: schedule.progress };
         let rescue = std::iter::repeat_n(&8, RESCUES);
         for (round, power) in schedule.powers.iter().chain(rescue).enumerate() {
@@ -341,6 +350,9 @@ impl<'a> Optimiser<'a> {
             }
             // A power is worked off before the next, or its worst elements hide all others.
             for _ in 0..schedule.repeats {
+                if *work > start + MOST_WORK {
+                    break;
+                }
                 let [before, after] = problem.minimise(lbfgs, Measure::Shape(*power), REACH, limits, work);
                 problem.refresh();
                 let now = rank(problem);

@@ -95,6 +95,8 @@ pub(super) struct Problem<'a> {
     nodes: Vec<[Vector; 2]>,
     pub unknowns: Vec<f64>,
     pub scales: Scales,
+    /// Spacing of the grid that unknowns stay on, in edge lengths.
+    pub grid: f64,
     pub measure: Measure,
     /// Least scaled Jacobian at the last refresh, and the mean of the elements'.
     pub scaled_jacobian: f64,

@@ -34,7 +34,7 @@ impl Problem<'_> {
                 }
             }
         }
-        let n = self.unknowns.len();
+        let (n, grid) = (self.unknowns.len(), self.grid);
         let (metric, cells) = (&mut self.scales.metric, &mut self.scales.cells);
         metric.clear();
         metric.resize(n, 1.0);
@@ -43,7 +43,7 @@ impl Problem<'_> {
         let mut set = |unknown: u32, count: usize, [stiffness, plain]: [f64; 2]| {
             let range = unknown as usize..unknown as usize + count;
             metric[range.clone()].fill(1.0 / stiffness);
-            cells[range].fill(grid_cell(1.0 / plain));
+            cells[range].fill(grid_cell(1.0 / plain, grid));
         };
         for (vertex, stiffness) in self.vertices.iter().zip(at_vertex) {
             match vertex.freedom {

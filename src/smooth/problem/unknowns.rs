@@ -3,6 +3,7 @@
 use super::{Freedom, LocalEdge, LocalElement, LocalVertex, Problem, Shape, EVENNESS};
 use crate::domain::{Boundary, BoundaryPoint, Place, Span};
 use crate::mesh::{BoundaryError, QuadMesh};
+use crate::numerics::tolerances::DECISION_GRID;
 use crate::numerics::{Vector, NONE};
 use crate::smooth::kernel::{Measure, Target};
 use crate::smooth::reference::Reference;
@@ -73,6 +74,7 @@ impl<'a> Problem<'a> {
             nodes: Vec::new(),
             unknowns: Vec::new(),
             scales: Default::default(),
+            grid: DECISION_GRID,
             measure: Measure::Shape(2),
             scaled_jacobian: 0.0,
             mean_scaled_jacobian: 0.0,
