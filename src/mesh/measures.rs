@@ -15,6 +15,11 @@ pub struct ElementMeasures {
     pub max_angle: f64,
     /// Mean length of the longer pair of opposite sides by that of the shorter, at least 1.
     pub aspect_ratio: f64,
+    /// Length of the longest side by that of the shortest, at least 1.
+    pub edge_ratio: f64,
+    /// Maximum of (|x_ξ|² + |x_η|²) / (2 det J), the condition number of J in the Frobenius norm: 1 where
+    /// the grid is square and equally spaced, infinite where it is inverted.
+    pub condition: f64,
     /// Area (exact up to rounding).
     pub area: f64,
     /// Minimum by maximum of det J; at most 1, negative where inverted.
@@ -154,6 +159,8 @@ impl Quality {
             min_angle: f64::INFINITY,
             max_angle: f64::NEG_INFINITY,
             aspect_ratio: 1.0,
+            edge_ratio: 1.0,
+            condition: 1.0,
             area: self.area(nodes),
             jacobian_ratio: 0.0,
         };
@@ -163,12 +170,17 @@ impl Quality {
             let angle = det.atan2(xu[k] * xv[k] + yu[k] * yv[k]);
             result.min_angle = result.min_angle.min(angle);
             result.max_angle = result.max_angle.max(angle);
+            let squares = xu[k] * xu[k] + yu[k] * yu[k] + xv[k] * xv[k] + yv[k] * yv[k];
+            let condition = if det > 0.0 { squares / (2.0 * det) } else { f64::INFINITY };
+            result.condition = result.condition.max(condition);
             (low, high) = (low.min(det), high.max(det));
         }
         result.jacobian_ratio = if high > 0.0 { low / high } else { -1.0 };
         let lengths = self.side_lengths(nodes);
         let (a, b) = (lengths[0] + lengths[2], lengths[1] + lengths[3]);
         result.aspect_ratio = a.max(b) / a.min(b);
+        let (short, long) = lengths.iter().fold((f64::INFINITY, 0.0f64), |(s, l), x| (x.min(s), x.max(l)));
+        result.edge_ratio = long / short;
         result
     }
 
