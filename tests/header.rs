@@ -154,3 +154,17 @@ fn the_header_has_everything_once() {
     assert!(text.lines().all(|l| l.chars().count() <= WIDTH + 20), "a line is too long");
     assert!(text.is_ascii());
 }
+
+/// The functions that the header declares are the ones that the shared library may export.
+#[test]
+fn the_list_of_symbols_is_the_header_s() {
+    let text = header();
+    let mut names: Vec<&str> = Vec::new();
+    for line in text.lines().filter(|l| !l.starts_with([' ', '/', '#']) && !l.starts_with("typedef")) {
+        let Some(open) = line.find('(') else { continue };
+        names.extend(line[..open].rsplit([' ', '*']).next().filter(|n| n.starts_with("quadrel_")));
+    }
+    names.sort_unstable();
+    let listed = fs::read_to_string(root().join("cpp_tests/symbols.txt")).unwrap();
+    assert_eq!(names.join("\n"), listed.trim_end(), "cpp_tests/symbols.txt");
+}

@@ -76,17 +76,20 @@ impl StageArrays {
         }
         if let Some(layout) = &stages.block_layout {
             for region in &layout.regions {
-                let mut outline: Vec<Point> = Vec::new();
+                let mut outline = Vec::new();
                 for step in region.sides.iter().flatten() {
-                    let points = layout.arcs[step.arc as usize].points.iter().map(|p| frame.to_caller(*p));
-                    // Each arc begins where the one before ended.
-                    outline.pop();
+                    let arc = &layout.arcs[step.arc as usize];
+                    // The nodes close the outline; arcs may end a little beside them.
+                    let inside = &arc.points[1..arc.points.len() - 1];
+                    let node = layout.nodes[arc.nodes[usize::from(!step.forward)] as usize].point;
+                    outline.push(frame.to_caller(node));
                     if step.forward {
-                        outline.extend(points);
+                        outline.extend(inside.iter().map(|p| frame.to_caller(*p)));
                     } else {
-                        outline.extend(points.rev());
+                        outline.extend(inside.iter().rev().map(|p| frame.to_caller(*p)));
                     }
                 }
+                outline.extend(outline.first().copied());
                 arrays.blocks.add(outline);
                 arrays.block_sides.push(region.sides.len() as i32);
             }
