@@ -358,6 +358,32 @@ quadrel_status quadrel_options_set_quality_floor(quadrel_options *options, doubl
 quadrel_status quadrel_options_set_max_elements(quadrel_options *options, size_t limit);
 
 /*
+ * ---- A base triangulation of the caller's own ----
+ */
+
+/**
+ * Sets the base mesh that generation starts from, instead of making one; it is copied. Triangles are
+ * counter-clockwise. Each border vertex has a place on the domain's boundary: boundary holds its number, its
+ * loop and its segment in that loop (counted as they were added), parameters holds t in [0, 1]; a vertex
+ * between two segments may be there once or for both. Every corner and every change of name needs a vertex,
+ * and border edges should turn with the boundary by less than 0.3 rad: the mesh is not refined.
+ *
+ * It is checked against the domain by quadrel_generate: QUADREL_ERROR_BASE_MESH, with the place, if it does
+ * not triangulate it. With three counts of 0 quadrel makes its own base mesh again (the default).
+ *
+ * Shapes: vertices [vertex_count][2], triangles [triangle_count][3] vertices, boundary
+ * [boundary_count][3] vertex, loop, segment, and parameters [boundary_count].
+ */
+quadrel_status quadrel_options_set_base_triangulation(quadrel_options *options,
+                                                      const double *vertices,
+                                                      size_t vertex_count,
+                                                      const int32_t *triangles,
+                                                      size_t triangle_count,
+                                                      const int32_t *boundary,
+                                                      const double *parameters,
+                                                      size_t boundary_count);
+
+/*
  * ---- Progress ----
  */
 

@@ -241,6 +241,15 @@ class Options {
   }
   Options& max_element_size(double h) { return done(quadrel_options_set_max_element_size(get(), h)); }
   Options& base_mesh_size(double h) { return done(quadrel_options_set_base_mesh_size(get(), h)); }
+  // Points [n], counter-clockwise triangles [n][3], border vertices [n][3] (vertex, loop, segment) and the
+  // parameter t of each there; all empty: quadrel makes its own base mesh.
+  Options& base_triangulation(const std::vector<Point>& points, const std::vector<std::array<std::int32_t, 3>>& triangles,
+                              const std::vector<std::array<std::int32_t, 3>>& boundary, const std::vector<double>& parameters) {
+    if (boundary.size() != parameters.size()) throw std::invalid_argument("as many parameters as boundary vertices");
+    return done(quadrel_options_set_base_triangulation(
+        get(), points.empty() ? nullptr : points[0].data(), points.size(), triangles.empty() ? nullptr : triangles[0].data(),
+        triangles.size(), boundary.empty() ? nullptr : boundary[0].data(), parameters.data(), boundary.size()));
+  }
   Options& quality_floor(double q) { return done(quadrel_options_set_quality_floor(get(), q)); }
   Options& max_elements(std::size_t limit) { return done(quadrel_options_set_max_elements(get(), limit)); }
   Options& progress(Progress report) {

@@ -5,11 +5,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The sections in the header's order: a type is declared before it is used.
-const SECTIONS: [&str; 10] = [
+const SECTIONS: [&str; 11] = [
     "status",
     "domain",
     "domain_file",
     "options",
+    "base_triangulation",
     "progress",
     "generate",
     "mesh",

@@ -25,6 +25,17 @@ static void options_out_of_range(void) {
     CHECK_STATUS(quadrel_options_set_quality_floor(o, 0), bad);
     CHECK_STATUS(quadrel_options_set_quality_floor(o, 1), bad);
     CHECK_STATUS(quadrel_options_set_max_elements(o, 0), bad);
+    {
+        const double p[2] = {0, 0};
+        const int32_t t[3] = {0, 0, 0};
+        CHECK_STATUS(quadrel_options_set_base_triangulation(o, NULL, 1, t, 1, t, p, 1), QUADREL_ERROR_NULL);
+        CHECK_STATUS(quadrel_options_set_base_triangulation(o, p, 1, NULL, 1, t, p, 1), QUADREL_ERROR_NULL);
+        CHECK_STATUS(quadrel_options_set_base_triangulation(o, p, 1, t, 1, NULL, p, 1), QUADREL_ERROR_NULL);
+        CHECK_STATUS(quadrel_options_set_base_triangulation(o, p, 1, t, 1, t, NULL, 1), QUADREL_ERROR_NULL);
+        CHECK_STATUS(quadrel_options_set_base_triangulation(o, p, (size_t)-1, t, 1, t, p, 1), bad);
+        CHECK_STATUS(quadrel_options_set_base_triangulation(NULL, p, 1, t, 1, t, p, 1), QUADREL_ERROR_NULL);
+        OK(quadrel_options_set_base_triangulation(o, NULL, 0, NULL, 0, NULL, NULL, 0));
+    }
     OK(quadrel_options_set_max_element_size(o, 0));
     OK(quadrel_options_set_base_mesh_size(o, 0));
     OK(quadrel_options_set_progress(o, NULL, NULL, NULL));

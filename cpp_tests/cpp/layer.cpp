@@ -87,6 +87,55 @@ void meshes() {
   CHECK(moved.element_count() > 0);
 }
 
+// The disc on a base mesh of rings made here.
+void own_base_mesh() {
+  constexpr std::int32_t sectors = 48, rings = 10;
+  std::vector<Point> points{{0, 0}};
+  std::vector<std::array<std::int32_t, 3>> triangles, boundary;
+  std::vector<double> parameters;
+  const auto at = [](std::int32_t ring, std::int32_t k) { return 1 + (ring - 1) * sectors + (k + sectors) % sectors; };
+  for (std::int32_t ring = 1; ring <= rings; ++ring) {
+    for (std::int32_t k = 0; k < sectors; ++k) {
+      const double t = static_cast<double>(k) / sectors, radius = static_cast<double>(ring) / rings;
+      points.push_back({radius * std::cos(2 * TEST_PI * t), radius * std::sin(2 * TEST_PI * t)});
+      if (ring == 1) {
+        triangles.push_back({0, at(1, k), at(1, k + 1)});
+      } else {
+        triangles.push_back({at(ring - 1, k), at(ring, k), at(ring, k + 1)});
+        triangles.push_back({at(ring - 1, k), at(ring, k + 1), at(ring - 1, k + 1)});
+      }
+      if (ring == rings) {
+        boundary.push_back({at(ring, k), 0, 0});
+        parameters.push_back(t);
+      }
+    }
+  }
+  quadrel::Domain disc;
+  disc.begin(quadrel::Loop::Outer).arc({0, 0}, 1, 0, 2 * TEST_PI).end();
+  quadrel::Stages stages;
+  quadrel::Options options;
+  options.base_triangulation(points, triangles, boundary, parameters);
+  const quadrel::Mesh mesh = quadrel::generate(disc, options, &stages);
+  CHECK(mesh.element_count() <= 12 && stages.base_vertices().size() == 2 * points.size());
+  CHECK(stages.singularity_valences().size() == 4);
+  for (std::int32_t valence : stages.singularity_valences()) CHECK(valence == 3);
+  for (std::size_t i = 0; i < points.size(); ++i) CHECK(std::abs(stages.base_vertices()[2 * i] - points[i][0]) < 1e-12);
+
+  boundary[0][2] = 1;
+  options.base_triangulation(points, triangles, boundary, parameters);
+  CHECK(thrown([&] { quadrel::generate(disc, options); }) == QUADREL_ERROR_INVALID_ARGUMENT);
+  boundary[0] = {-1, 0, 0};
+  options.base_triangulation(points, triangles, boundary, parameters);
+  CHECK(thrown([&] { quadrel::generate(disc, options); }) == QUADREL_ERROR_INVALID_ARGUMENT);
+  boundary.erase(boundary.begin());
+  parameters.erase(parameters.begin());
+  options.base_triangulation(points, triangles, boundary, parameters);
+  CHECK(thrown([&] { quadrel::generate(disc, options, &stages); }) == QUADREL_ERROR_BASE_MESH);
+  CHECK(stages.reached() == QUADREL_STAGE_DOMAIN);
+  options.base_triangulation({}, {}, {}, {});
+  CHECK(quadrel::generate(disc, options).element_count() > 0);
+}
+
 void errors() {
   quadrel::Domain bow_tie;
   bow_tie.begin(quadrel::Loop::Outer).line({0, 0}, {4, 4}).line({4, 4}, {0, 4}).line({0, 4}, {4, 0}).line({4, 0}, {0, 0}).end();
@@ -114,6 +163,7 @@ void files() {
 
 int main() {
   meshes();
+  own_base_mesh();
   errors();
   files();
   return failures != 0;

@@ -51,6 +51,7 @@
 // The names are C's; the first comment of the header says for all functions what makes a call safe.
 #![allow(non_camel_case_types, clippy::missing_safety_doc)]
 
+mod base_triangulation;
 mod callback;
 mod domain;
 mod domain_file;
@@ -66,6 +67,7 @@ mod stages;
 mod status;
 mod write;
 
+pub use base_triangulation::*;
 pub use domain::*;
 pub use domain_file::*;
 pub use generate::*;
