@@ -50,6 +50,8 @@
 #![allow(unsafe_code)]
 // The names are C's; the first comment of the header says for all functions what makes a call safe.
 #![allow(non_camel_case_types, clippy::missing_safety_doc)]
+// The comments are the header's: brackets are shapes of arrays.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 mod base_triangulation;
 mod callback;
