@@ -61,6 +61,9 @@ configure "$interface/sanitized" -DQUADREL_TEST_SANITIZERS=address,undefined
 cmake --build "$interface/sanitized"
 ctest --test-dir "$interface/sanitized" --output-on-failure --parallel 2
 
+step "60 seconds of fuzzing through the C interface"
+cpp_tests/fuzz/run.sh "$interface/fuzz" "${QUADREL_FUZZ_SECONDS:-60}"
+
 step "the commands of the README"
 cargo build --release --locked
 binary="$PWD/target/release/quadrel"
