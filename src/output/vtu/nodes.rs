@@ -2,7 +2,7 @@
 
 use crate::mesh::HighOrderMesh;
 use crate::numerics::interpolation::{equispaced, Interpolation};
-use crate::numerics::{cross, Point, Vector};
+use crate::numerics::{Point, Vector};
 
 /// The place of node (i, j), each in 0..=`order`, in VTK's list of the nodes of a Lagrange
 /// quadrilateral: corners, then edges bottom, right, top, left (all with growing i or j), then the
@@ -84,24 +84,4 @@ fn tensor(matrix: &nalgebra::DMatrix<f64>, given: &[Point], values: &mut [Point]
             values[b * row + a] = Point::from(sum);
         }
     }
-}
-
-/// For each element the least det J at its nodes divided by the largest.
-pub fn jacobian_ratios(mesh: &HighOrderMesh) -> Vec<f64> {
-    let row = mesh.order + 1;
-    let d = Interpolation::new(mesh.reference_nodes.clone()).differentiation();
-    let ratio = |nodes: &[Point]| {
-        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for j in 0..row {
-            for i in 0..row {
-                let along_i: Vector = (0..row).map(|k| nodes[j * row + k].coords * d[(i, k)]).sum();
-                let along_j: Vector = (0..row).map(|k| nodes[k * row + i].coords * d[(j, k)]).sum();
-                let jacobian = cross(along_i, along_j);
-                least = least.min(jacobian);
-                most = most.max(jacobian);
-            }
-        }
-        least / most
-    };
-    mesh.nodes.chunks_exact(row * row).map(ratio).collect()
 }
