@@ -19,6 +19,11 @@ command -v pkg-config >/dev/null || missing+=(pkg-config)
 command -v valgrind >/dev/null || missing+=(valgrind libc6-dbg)
 # Headers are compiled with both compilers, and the fuzzer is clang's.
 command -v clang++ >/dev/null || missing+=(clang libclang-rt-dev)
+# The C interface is compared with these (about 250 MB to download). Debian's VTK draws with an X server alone.
+[ -d /usr/include/CGAL ] || missing+=(libcgal-dev)
+[ -d /usr/include/OpenMesh ] || missing+=(libopenmesh-dev)
+compgen -G '/usr/include/vtk-9*' >/dev/null || missing+=(libvtk9-dev)
+command -v xvfb-run >/dev/null || missing+=(xvfb xauth)
 if ! command -v cargo >/dev/null && [ ! -x "$HOME/.cargo/bin/cargo" ]; then
     command -v curl >/dev/null || missing+=(curl ca-certificates)
 fi
