@@ -13,7 +13,17 @@ as_root() { if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi; }
 
 step "tools"
 missing=()
-command -v cc >/dev/null || missing+=(build-essential)
+{ command -v cc && command -v c++; } >/dev/null || missing+=(build-essential)
+command -v cmake >/dev/null || missing+=(cmake)
+command -v pkg-config >/dev/null || missing+=(pkg-config)
+command -v valgrind >/dev/null || missing+=(valgrind libc6-dbg)
+# Headers are compiled with both compilers, and the fuzzer is clang's.
+command -v clang++ >/dev/null || missing+=(clang libclang-rt-dev)
+# The C interface is compared with these (about 250 MB to download). Debian's VTK draws with an X server alone.
+[ -d /usr/include/CGAL ] || missing+=(libcgal-dev)
+[ -d /usr/include/OpenMesh ] || missing+=(libopenmesh-dev)
+compgen -G '/usr/include/vtk-9*' >/dev/null || missing+=(libvtk9-dev)
+command -v xvfb-run >/dev/null || missing+=(xvfb xauth)
 if ! command -v cargo >/dev/null && [ ! -x "$HOME/.cargo/bin/cargo" ]; then
     command -v curl >/dev/null || missing+=(curl ca-certificates)
 fi
@@ -43,6 +53,21 @@ step "documentation"
 RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --locked --lib
 step "tests"
 cargo test --release --locked
+
+step "C and C++"
+# One folder for cargo and all builds of the tests.
+interface="$PWD/target/interface"
+configure() { cmake -S cpp_tests -B "$@" -DQUADREL_CARGO_TARGET_DIR="$interface/cargo" >/dev/null; }
+configure "$interface/tests"
+cmake --build "$interface/tests"
+ctest --test-dir "$interface/tests" --output-on-failure --parallel 2
+step "C and C++ with the address and undefined-behaviour sanitizers"
+configure "$interface/sanitized" -DQUADREL_TEST_SANITIZERS=address,undefined
+cmake --build "$interface/sanitized"
+ctest --test-dir "$interface/sanitized" --output-on-failure --parallel 2
+
+step "60 seconds of fuzzing through the C interface"
+cpp_tests/fuzz/run.sh "$interface/fuzz" "${QUADREL_FUZZ_SECONDS:-60}"
 
 step "the commands of the README"
 cargo build --release --locked

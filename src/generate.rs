@@ -8,6 +8,7 @@ mod blocks;
 mod rounds;
 mod watch;
 
+use crate::base_mesh::{self, Triangulation};
 use crate::domain::{Boundary, Domain};
 use crate::error::{Error, Result};
 use crate::mesh::{BoundaryTolerance, HighOrderMesh, QuadMesh};
@@ -18,6 +19,9 @@ use watch::Watch;
 
 /// Base meshes tried, each finer than the one before, until blocks and elements come out right.
 const ATTEMPTS: usize = 4;
+
+/// The same for a base mesh that the caller brings: it stays, but the second attempt treats tips otherwise.
+const GIVEN_ATTEMPTS: usize = 2;
 
 /// Share of the tolerance that the stages aim at: they measure on the boundary's tables, at their
 /// quadrature points, and the last optimisation may use all of what they allow.
@@ -53,12 +57,20 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
     stages.boundary = Some(boundary.clone());
     let tolerance = BoundaryTolerance::new(options, &boundary);
 
+    let mut given = None;
+    if let Some(own) = &options.base_triangulation {
+        let adopt = |_: &mut Stages| base_mesh::adopt(own, domain, &boundary);
+        given = Some(watch.run(stages, Stage::BaseMesh, adopt)?);
+    }
+    let attempts = if given.is_some() { GIVEN_ATTEMPTS } else { ATTEMPTS };
+
     let mut failure = None;
     let mut request = blocks::first_request(options, &boundary);
-    for attempt in 1..=ATTEMPTS {
+    for attempt in 1..=attempts {
         stages.begin_attempt(attempt);
         // The stages speak of places in the canonical frame.
-        let elements = steps_1_to_9(&boundary, options, &tolerance, &mut request, &mut watch, stages)
+        let given = given.as_ref();
+        let elements = steps_1_to_9(&boundary, given, options, &tolerance, &mut request, &mut watch, stages)
             .map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)));
         // The proof: curved elements of order N with positive Jacobians, on the exact curves.
         let result = elements.and_then(|elements| {
@@ -81,14 +93,15 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
 
 fn steps_1_to_9(
     boundary: &Boundary,
+    given: Option<&Triangulation>,
     options: &Options,
     tolerance: &BoundaryTolerance,
-    request: &mut crate::base_mesh::Request,
+    request: &mut base_mesh::Request,
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<QuadMesh> {
     // Steps 1 to 3: base mesh, cross field, singularities; refined until the index theorem holds.
-    let field = blocks::field(boundary, options, request, watch, stages)?;
+    let field = blocks::field(boundary, given, options, request, watch, stages)?;
 
     // What the stages aim at; the final mesh is measured against the tolerance itself.
     let aim = &BoundaryTolerance { value: TOLERANCE_AIM * tolerance.value, ..*tolerance };

@@ -33,6 +33,7 @@ pub mod base_mesh;
 pub mod cross_field;
 pub mod domain;
 pub mod error;
+pub mod ffi;
 mod generate;
 pub mod input;
 pub mod layout;

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::progress::Progress;
+use std::sync::Arc;
 
 /// The norm in which a boundary edge is compared with the exact curve (`docs` of
 /// [`crate::mesh`] define each).
@@ -46,6 +47,28 @@ pub enum Subdivision {
     Halving,
 }
 
+/// A caller's own base mesh (step 1), in the caller's frame. It has to triangulate the domain: its border
+/// vertices lie on the boundary curves, one at every corner and every change of name, and border edges follow
+/// the boundary. It is not refined: it should turn with the boundary by less than 0.3 rad an edge.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct BaseTriangulation {
+    pub vertices: Vec<[f64; 2]>,
+    /// Counter-clockwise.
+    pub triangles: Vec<[u32; 3]>,
+    /// Where on the boundary each border vertex lies.
+    pub boundary: Vec<BoundaryVertex>,
+}
+
+/// A border vertex of a [`BaseTriangulation`] and its place: parameter `t` of a segment of a loop, both
+/// counted as they were added to the domain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoundaryVertex {
+    pub vertex: u32,
+    pub loop_index: u32,
+    pub segment: u32,
+    pub t: f64,
+}
+
 /// Everything that steers [`crate::generate`].
 #[derive(Clone)]
 pub struct Options {
@@ -64,6 +87,8 @@ pub struct Options {
     pub max_element_size: Option<f64>,
     /// Wanted size of the base triangles, in the caller's unit; `None`: automatic.
     pub base_mesh_size: Option<f64>,
+    /// The caller's own base mesh; `None`: one is made.
+    pub base_triangulation: Option<Arc<BaseTriangulation>>,
     /// Share, in (0, 1), of the domain's best possible scaled Jacobian ([`crate::mesh::scaled_jacobian_ceiling`])
     /// that coarsening does not take elements below; where the mesh is below it already, coarsening does not
     /// make it worse.
@@ -84,6 +109,7 @@ impl Default for Options {
             subdivision: Subdivision::EqualError,
             max_element_size: None,
             base_mesh_size: None,
+            base_triangulation: None,
             quality_floor: 0.8,
             max_elements: 1_000_000,
             progress: Progress::default(),

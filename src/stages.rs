@@ -48,6 +48,12 @@ pub struct Stages {
 }
 
 impl Stages {
+    /// Puts what a reader had to say before the other warnings; the domain may repeat it.
+    pub fn put_first(&mut self, warnings: &[String]) {
+        let later = std::mem::replace(&mut self.warnings, warnings.to_vec());
+        self.warnings.extend(later.into_iter().filter(|w| !warnings.contains(w)));
+    }
+
     /// Forgets what an attempt before left, except its warnings and times.
     pub(crate) fn begin_attempt(&mut self, attempt: usize) {
         *self = Stages {

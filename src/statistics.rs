@@ -1,5 +1,7 @@
 //! The numbers of one run, for tables and statistics files.
 
+mod json;
+
 use crate::domain::Boundary;
 use crate::error::Result;
 use crate::mesh::{irregularity_bound, quads_by_table, scaled_jacobian_ceiling, HighOrderMesh, Irregular};
@@ -85,7 +87,7 @@ impl Statistics {
             blocks: stages.block_layout.as_ref().map(|l| l.regions.len()),
             elements: mesh.map(|m| m.elements.len()),
             order: mesh.map(|m| m.order),
-            nodes: mesh.map(node_count),
+            nodes: mesh.map(HighOrderMesh::node_count),
             irregular: mesh.and_then(|m| Some(irregular(m, boundary?))),
             irregular_expected: boundary.map(|b| irregularity_bound(b).expected),
             scaled_jacobian: mesh.and_then(|m| Distribution::of(&m.scaled_jacobian)),
@@ -126,12 +128,6 @@ impl LoopErrors {
         }
         LoopErrors { max: loops.iter().copied().fold(0.0, f64::max), loops }
     }
-}
-
-/// Nodes at vertices, inside edges and inside elements.
-fn node_count(mesh: &HighOrderMesh) -> usize {
-    let inside = mesh.order - 1;
-    mesh.vertices.len() + mesh.edges.len() * inside + mesh.elements.len() * inside * inside
 }
 
 /// Irregular vertices: inside those of valence ≠ 4; on the boundary those whose number of elements is

@@ -196,6 +196,8 @@ fn the_dependency_check_sees_violations() {
         source("domain", "use crate::{error::Error, mesh::{QuadMesh, Edge}};"),
         source("mesh", "fn f(s: &crate::stages::Stages) {}"),
         source("generate", "use crate::output::svg;"),
+        source("generate", "use crate::ffi::status_of;"),
+        source("output", "use crate::ffi::status_of;"),
         source("numerics", "use crate::{\n    numerics::Point,\n    domain::Frame,\n};"),
     ];
     let fine = [
@@ -214,6 +216,12 @@ fn the_dependency_check_sees_violations() {
 fn only_the_base_mesh_names_spade() {
     let naming: Vec<_> = sources().into_iter().filter(|s| has_word(&s.code, "spade")).collect();
     assert!(naming.iter().all(|s| s.part == "base_mesh"), "{:?}", naming.first().map(|s| &s.path));
+}
+
+#[test]
+fn only_ffi_names_libc() {
+    let naming: Vec<_> = sources().into_iter().filter(|s| has_word(&s.code, "libc")).collect();
+    assert!(naming.iter().all(|s| s.part == "ffi"), "{:?}", naming.first().map(|s| &s.path));
 }
 
 #[test]

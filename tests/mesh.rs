@@ -480,3 +480,49 @@ fn irregular_counts_boundary_vertices_too() {
     blunt.junctions[0].angle = 2.0 * FRAC_PI_2;
     assert_eq!(irregular(&mesh, &blunt), Irregular { interior: 0, boundary: 1 });
 }
+
+#[test]
+fn connectivity_of_the_disc() {
+    let (b, mesh) = disc_o_grid(0.5);
+    let mesh = finish(&b, &mesh, &unit_circle_tolerance(&b, 4, 1e-2)).unwrap();
+    let (neighbors, sides) = (mesh.element_neighbors(), mesh.edge_sides());
+    for (e, own) in mesh.element_edges.iter().enumerate() {
+        for s in 0..4 {
+            let edge = &mesh.edges[own[s] as usize];
+            let right = usize::from(edge.elements[0] != e as u32);
+            assert_eq!(sides[own[s] as usize][right], s as u32);
+            assert_eq!(neighbors[e][s], edge.elements[1 - right]);
+        }
+    }
+    // Every node is numbered, and elements agree on those they share.
+    let (numbers, points) = (mesh.node_numbers(), mesh.shared_nodes());
+    assert_eq!(points.len(), mesh.node_count());
+    let mut met = vec![false; points.len()];
+    for (number, node) in numbers.iter().zip(&mesh.nodes) {
+        met[*number as usize] = true;
+        assert_eq!(points[*number as usize], *node);
+    }
+    assert!(met.iter().all(|m| *m));
+    assert_eq!(points[..mesh.vertices.len()], mesh.vertices[..]);
+    let errors = mesh.element_boundary_errors();
+    let on_border = neighbors.iter().filter(|n| n.contains(&NONE)).count();
+    assert_eq!(errors.iter().filter(|e| **e > 0.0).count(), on_border);
+}
+
+#[test]
+fn edge_ratio_and_condition_of_known_elements() {
+    let quality = Quality::new(3);
+    let nodes = |width: f64, shear: f64| -> Vec<Point> {
+        let x = GaussLobatto::new(3).nodes;
+        let at = |u: f64, v: f64| Point::new(width * u + shear * v, v);
+        x.iter().flat_map(|v| x.iter().map(move |u| at(*u, *v))).collect()
+    };
+    let square = quality.measure(&nodes(1.0, 0.0));
+    assert!((square.edge_ratio - 1.0).abs() < 1e-14 && (square.condition - 1.0).abs() < 1e-14);
+    let rectangle = quality.measure(&nodes(3.0, 0.0));
+    assert!((rectangle.edge_ratio - 3.0).abs() < 1e-13);
+    assert!((rectangle.condition - 10.0 / 6.0).abs() < 1e-13);
+    let sheared = quality.measure(&nodes(1.0, 1.0));
+    assert!((sheared.condition - 1.5).abs() < 1e-13 && (sheared.edge_ratio - 2f64.sqrt()).abs() < 1e-13);
+    assert_eq!(quality.measure(&nodes(-1.0, 0.0)).condition, f64::INFINITY);
+}

@@ -8,6 +8,7 @@ mod grid;
 mod vtu;
 
 use grid::grid_mesh;
+use quadrel::mesh::Quality;
 use quadrel::numerics::{Point, NONE};
 use quadrel::output::{self, svg, Format};
 use std::path::{Path, PathBuf};
@@ -89,6 +90,10 @@ fn vtu_carries_quality_blocks_and_boundaries() {
     assert_eq!(file.integers("block"), mesh.blocks.iter().map(|b| *b as i32).collect::<Vec<_>>());
     let ratios = file.doubles("jacobian_ratio");
     assert!(ratios.len() == 6 && ratios.iter().all(|r| 0.3 < *r && *r < 1.0), "{ratios:?}");
+    // The same measure as everywhere: over the element, not at its nodes.
+    let quality = Quality::new(mesh.order);
+    let measured = mesh.nodes.chunks_exact(25).map(|nodes| quality.measure(nodes).jacobian_ratio);
+    assert_eq!(ratios, measured.collect::<Vec<_>>());
     let sides = file.integers("boundary");
     let mut outer = 0;
     for (e, edges) in mesh.element_edges.iter().enumerate() {

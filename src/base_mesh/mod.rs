@@ -8,12 +8,13 @@
 //! of the chords tells which cross or run closer to the boundary across than their arcs are high;
 //! these are halved and the triangulation is made anew. Then Delaunay refinement (Ruppert 1995, with
 //! the small-angle rule of Miller, Pav and Walkington 2005) bounds angles and areas; it resolves narrow
-//! parts by itself because it splits chords that are long for the gap.
+//! parts by itself because it splits chords that are long for the gap. Or the caller brings one ([`adopt`]).
 
 mod adjacency;
 mod check;
 mod delaunay;
 mod element_size;
+mod given;
 mod locate;
 mod sampling;
 mod size_field;
@@ -22,6 +23,7 @@ mod tips;
 pub use tips::{doubtful_corners, doubtful_reach};
 
 pub use element_size::ElementSize;
+pub use given::adopt;
 
 use crate::domain::{Boundary, Place};
 use crate::error::{Error, Result};

@@ -23,6 +23,7 @@ mod domain_check;
 mod exact;
 mod frame;
 mod gauss;
+mod given_place;
 mod junction;
 mod line;
 mod nesting;

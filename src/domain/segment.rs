@@ -59,6 +59,12 @@ impl CurveSegment {
         a + (b - a) * self.unreversed(t)
     }
 
+    /// The parameter in the loop's direction of the caller's `t`; outside [0, 1] if it is of another part.
+    pub(crate) fn loop_parameter(&self, t: f64) -> f64 {
+        let [a, b] = self.range;
+        self.unreversed((t - a) / (b - a))
+    }
+
     /// The parameter in the caller's sense, as a share of the range.
     fn unreversed(&self, t: f64) -> f64 {
         if self.reversed {

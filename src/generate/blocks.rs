@@ -42,9 +42,11 @@ pub(super) fn refine(request: &mut Request, boundary: &Boundary) {
     request.size = Some(size * FINER);
 }
 
-/// Base mesh, cross field and singularities, refined locally until the index theorem holds.
+/// Base mesh, cross field and singularities, refined locally until the index theorem holds; on the `given`
+/// mesh, if there is one, without refinement.
 pub(super) fn field(
     boundary: &Boundary,
+    given: Option<&Triangulation>,
     options: &Options,
     request: &mut Request,
     watch: &mut Watch,
@@ -55,7 +57,10 @@ pub(super) fn field(
     let tips = if stages.attempts <= 1 { Tips::Balanced } else { Tips::OneQuad };
     let mut round = 0;
     loop {
-        let mesh = watch.run(stages, Stage::BaseMesh, |_| base_mesh::triangulate(boundary, request))?;
+        let mesh = watch.run(stages, Stage::BaseMesh, |_| match given {
+            Some(mesh) => Ok(mesh.clone()),
+            None => base_mesh::triangulate(boundary, request),
+        })?;
         stages.triangulation = Some(mesh.clone());
         let cross = watch.run(stages, Stage::CrossField, |_| {
             cross_field::solve_with_tips(&mesh, boundary, options.field, tips)
@@ -63,8 +68,8 @@ pub(super) fn field(
         stages.cross_field = Some(cross.clone());
         let found = singularities::find(&mesh, boundary, &cross);
         let known = found.as_ref().map_or(&[][..], |(singularities, _)| singularities);
-        if let (Err(places), true) =
-            (singularities::gate(&mesh, boundary, &cross, known, least), round < GATE_ROUNDS)
+        let may_refine = given.is_none() && round < GATE_ROUNDS;
+        if let (Err(places), true) = (singularities::gate(&mesh, boundary, &cross, known, least), may_refine)
         {
             request.refine.extend(places);
             round += 1;

@@ -15,6 +15,11 @@ pub struct ElementMeasures {
     pub max_angle: f64,
     /// Mean length of the longer pair of opposite sides by that of the shorter, at least 1.
     pub aspect_ratio: f64,
+    /// Length of the longest side by that of the shortest, at least 1.
+    pub edge_ratio: f64,
+    /// Maximum of (|x_ξ|² + |x_η|²) / (2 det J), the condition number of J in the Frobenius norm: 1 where
+    /// the grid is square and equally spaced, infinite where it is inverted.
+    pub condition: f64,
     /// Area (exact up to rounding).
     pub area: f64,
     /// Minimum by maximum of det J; at most 1, negative where inverted.
@@ -146,29 +151,40 @@ impl Quality {
         self.nodes.point(&rows, at[1])
     }
 
+    /// Minimum by maximum of det J over the element with nodes `[j][i]`, at the samples.
+    pub fn jacobian_ratio(&self, nodes: &[Point]) -> f64 {
+        ratio(&self.slopes(nodes))
+    }
+
     /// All measures of the element with nodes `[j][i]`.
     pub fn measure(&self, nodes: &[Point]) -> ElementMeasures {
-        let [xu, yu, xv, yv] = self.slopes(nodes);
+        let slopes = self.slopes(nodes);
+        let [xu, yu, xv, yv] = &slopes;
         let mut result = ElementMeasures {
             scaled_jacobian: self.scaled_jacobian(nodes),
             min_angle: f64::INFINITY,
             max_angle: f64::NEG_INFINITY,
             aspect_ratio: 1.0,
+            edge_ratio: 1.0,
+            condition: 1.0,
             area: self.area(nodes),
             jacobian_ratio: 0.0,
         };
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for k in 0..xu.len() {
             let det = xu[k] * yv[k] - yu[k] * xv[k];
             let angle = det.atan2(xu[k] * xv[k] + yu[k] * yv[k]);
             result.min_angle = result.min_angle.min(angle);
             result.max_angle = result.max_angle.max(angle);
-            (low, high) = (low.min(det), high.max(det));
+            let squares = xu[k] * xu[k] + yu[k] * yu[k] + xv[k] * xv[k] + yv[k] * yv[k];
+            let condition = if det > 0.0 { squares / (2.0 * det) } else { f64::INFINITY };
+            result.condition = result.condition.max(condition);
         }
-        result.jacobian_ratio = if high > 0.0 { low / high } else { -1.0 };
+        result.jacobian_ratio = ratio(&slopes);
         let lengths = self.side_lengths(nodes);
         let (a, b) = (lengths[0] + lengths[2], lengths[1] + lengths[3]);
         result.aspect_ratio = a.max(b) / a.min(b);
+        let (short, long) = lengths.iter().fold((f64::INFINITY, 0.0f64), |(s, l), x| (x.min(s), x.max(l)));
+        result.edge_ratio = long / short;
         result
     }
 
@@ -211,6 +227,17 @@ impl Quality {
                 })
                 .sum()
         })
+    }
+}
+
+/// Least by largest of det(u, v); -1 where none is positive.
+fn ratio([xu, yu, xv, yv]: &[Vec<f64>; 4]) -> f64 {
+    let dets = (0..xu.len()).map(|k| xu[k] * yv[k] - yu[k] * xv[k]);
+    let (low, high) = dets.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), d| (d.min(l), d.max(h)));
+    if high > 0.0 {
+        low / high
+    } else {
+        -1.0
     }
 }
 

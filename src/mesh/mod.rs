@@ -22,6 +22,7 @@ mod boundary_error;
 mod bubbles;
 mod ceiling;
 mod conformity;
+mod connectivity;
 mod dense;
 mod exact_curve;
 mod geometry;

@@ -176,3 +176,11 @@ pub const FINAL_GRID: f64 = 1.0 / 262_144.0;
 /// Sizes and errors that differ by less than this share are equally large when changes of a mesh are put
 /// in order: in symmetric domains many are equal up to rounding.
 pub const ORDER_TIE: f64 = 1e-6;
+
+/// Arc length, relative to the canonical diagonal, within which a boundary vertex that the caller gives is the
+/// junction there: parameters come with roundings, and no chain is so short.
+pub const JUNCTION_MATCH: f64 = 1e-9;
+
+/// Most that a border vertex of the caller's base mesh may be off its place on the curve, relative to its
+/// shorter border edge: half way along a chord that turns by 0.8 rad, where refiners put vertices.
+pub const GIVEN_OFF_CURVE: f64 = 0.2;

@@ -3,11 +3,11 @@
 //! Exit status 0: mesh written; 1: refused; 2: wrong usage, or a file that cannot be read or written.
 
 mod arguments;
+mod columns;
 mod corpus;
 mod progress;
 mod report;
 mod run;
-mod statistics_file;
 
 use arguments::{Arguments, Command};
 use clap::Parser;

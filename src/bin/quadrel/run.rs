@@ -1,7 +1,7 @@
 //! Meshing one domain: read, generate, write, report.
 
 use crate::arguments::MeshArguments;
-use crate::{progress, report, statistics_file, Outcome};
+use crate::{progress, report, Outcome};
 use quadrel::error::{Error, Result};
 use quadrel::input::{self, Model};
 use quadrel::mesh::HighOrderMesh;
@@ -77,11 +77,7 @@ fn make(arguments: &MeshArguments, stages: &mut Stages) -> std::result::Result<M
     complete(&mut options, arguments, &model);
     let title = report::title(&model.name, &options);
     let result = quadrel::generate(&model.domain, &options, stages);
-    // The reader's warnings first; the domain may repeat them.
-    let mut warnings = model.warnings;
-    let later = std::mem::take(&mut stages.warnings);
-    warnings.extend(later.into_iter().filter(|w| !warnings.contains(w)).collect::<Vec<_>>());
-    stages.warnings = warnings;
+    stages.put_first(&model.warnings);
     Ok(Made { mesh: result?, files, title })
 }
 
@@ -124,7 +120,7 @@ fn finish(
         keep(write_pictures(folder, stages, &result));
     }
     if let Some(path) = &arguments.stats {
-        let bytes = statistics_file::to_text(&statistics).into_bytes();
+        let bytes = statistics.to_json_text().into_bytes();
         keep(output::write_files(&[(path.clone(), bytes)]).map(|()| vec![path.clone()]));
     }
     for path in &written {

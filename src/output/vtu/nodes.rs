@@ -2,7 +2,7 @@
 
 use crate::mesh::HighOrderMesh;
 use crate::numerics::interpolation::{equispaced, Interpolation};
-use crate::numerics::{cross, Point, Vector};
+use crate::numerics::{Point, Vector};
 
 /// The place of node (i, j), each in 0..=`order`, in VTK's list of the nodes of a Lagrange
 /// quadrilateral: corners, then edges bottom, right, top, left (all with growing i or j), then the
@@ -36,41 +36,32 @@ impl SharedNodes {
     /// Interpolates and numbers the nodes of `mesh`.
     pub fn new(mesh: &HighOrderMesh) -> Self {
         let n = mesh.order;
-        let (row, inside) = (n + 1, n - 1);
+        let row = n + 1;
         let interpolation = Interpolation::new(mesh.reference_nodes.clone());
         let matrix = interpolation.matrix(&equispaced(n));
-        let at_edges = mesh.vertices.len();
-        let at_insides = at_edges + mesh.edges.len() * inside;
+        let numbers = mesh.node_numbers();
         let mut points = mesh.vertices.clone();
-        points.resize(at_insides, Point::origin());
-        let mut cells = vec![0; mesh.elements.len() * row * row];
+        points.resize(mesh.node_count(), Point::origin());
+        let mut cells = vec![0; numbers.len()];
         let mut values = vec![Point::origin(); row * row];
-        for (e, corners) in mesh.elements.iter().enumerate() {
-            let given = &mesh.nodes[e * row * row..(e + 1) * row * row];
-            tensor(&matrix, given, &mut values);
-            let cell = &mut cells[e * row * row..(e + 1) * row * row];
-            for (c, &(i, j)) in [(0, 0), (n, 0), (n, n), (0, n)].iter().enumerate() {
-                cell[lagrange_index(n, i, j)] = corners[c] as usize;
-            }
-            for side in 0..4 {
-                let id = mesh.element_edges[e][side] as usize;
-                let edge = &mesh.edges[id];
-                let forward = edge.vertices[0] == corners[side];
-                for k in 1..n {
-                    // Position k along the edge is `along` when walking round the element.
-                    let along = if forward { k } else { n - k };
-                    let (i, j) = [(along, 0), (n, along), (n - along, n), (0, n - along)][side];
-                    let index = at_edges + id * inside + k - 1;
-                    cell[lagrange_index(n, i, j)] = index;
-                    if edge.elements[0] == e as u32 {
-                        points[index] = values[j * row + i];
-                    }
-                }
-            }
-            for j in 1..n {
-                for i in 1..n {
-                    cell[lagrange_index(n, i, j)] = points.len();
-                    points.push(values[j * row + i]);
+        for (e, sides) in mesh.element_edges.iter().enumerate() {
+            let own = e * row * row..(e + 1) * row * row;
+            tensor(&matrix, &mesh.nodes[own.clone()], &mut values);
+            let (numbers, cell) = (&numbers[own.clone()], &mut cells[own]);
+            // Of two elements at an edge one gives the points: the other's differ by rounding.
+            let gives = sides.map(|edge| mesh.edges[edge as usize].elements[0] == e as u32);
+            for (k, &number) in numbers.iter().enumerate() {
+                let (i, j) = (k % row, k / row);
+                cell[lagrange_index(n, i, j)] = number as usize;
+                let (left_or_right, below_or_above) = (i == 0 || i == n, j == 0 || j == n);
+                let given = match (left_or_right, below_or_above) {
+                    (true, true) => false,
+                    (false, true) => gives[if j == 0 { 0 } else { 2 }],
+                    (true, false) => gives[if i == 0 { 3 } else { 1 }],
+                    (false, false) => true,
+                };
+                if given {
+                    points[number as usize] = values[k];
                 }
             }
         }
@@ -93,24 +84,4 @@ fn tensor(matrix: &nalgebra::DMatrix<f64>, given: &[Point], values: &mut [Point]
             values[b * row + a] = Point::from(sum);
         }
     }
-}
-
-/// For each element the least det J at its nodes divided by the largest.
-pub fn jacobian_ratios(mesh: &HighOrderMesh) -> Vec<f64> {
-    let row = mesh.order + 1;
-    let d = Interpolation::new(mesh.reference_nodes.clone()).differentiation();
-    let ratio = |nodes: &[Point]| {
-        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for j in 0..row {
-            for i in 0..row {
-                let along_i: Vector = (0..row).map(|k| nodes[j * row + k].coords * d[(i, k)]).sum();
-                let along_j: Vector = (0..row).map(|k| nodes[k * row + i].coords * d[(j, k)]).sum();
-                let jacobian = cross(along_i, along_j);
-                least = least.min(jacobian);
-                most = most.max(jacobian);
-            }
-        }
-        least / most
-    };
-    mesh.nodes.chunks_exact(row * row).map(ratio).collect()
 }

@@ -1,7 +1,6 @@
 //! One domain in a process of its own.
 
 use crate::arguments::CorpusArguments;
-use crate::statistics_file::to_json;
 use quadrel::error::Error;
 use quadrel::stages::Stages;
 use quadrel::statistics::Statistics;
@@ -131,7 +130,7 @@ impl<'a> Child<'a> {
 /// Statistics of a run that left none.
 fn failed(status: &str, reason: String, seconds: f64) -> Value {
     let error = Err(Error::Internal { reason: reason.clone() });
-    let mut value = to_json(&Statistics::new(&Stages::default(), &error, seconds));
+    let mut value = Statistics::new(&Stages::default(), &error, seconds).to_json();
     value["status"] = status.into();
     value["message"] = reason.into();
     value

@@ -7,7 +7,7 @@ mod reduce;
 mod summary;
 
 use crate::arguments::CorpusArguments;
-use crate::statistics_file::flatten;
+use crate::columns::flatten;
 use crate::Outcome;
 use child::{Child, Scratch};
 use files::Case;

@@ -1,0 +1,234 @@
+//! Options
+//!
+//! A new object holds the defaults; quadrel_generate takes NULL for them. A value out of range fails at once
+//! and changes nothing.
+
+use super::guard::{free, guard, required_mut, Failure};
+use super::status::quadrel_status;
+use crate::options::{FieldMethod, Norm, Options, Subdivision, Tolerance};
+
+/// What steers the generation.
+#[derive(Default)]
+pub struct quadrel_options {
+    pub(super) options: Options,
+}
+
+/// The norm of the boundary error e(s) of an edge, s the arc length.
+pub type quadrel_norm = i32;
+
+/// (integral of |e|^2 ds)^(1/2); unit length^(3/2)
+pub const QUADREL_NORM_L2: quadrel_norm = 0;
+/// (integral of |e|^2 + L^2 |e'|^2 ds)^(1/2), L the edge's length; unit length^(3/2)
+pub const QUADREL_NORM_H1: quadrel_norm = 1;
+/// max |e|; unit length
+pub const QUADREL_NORM_MAX: quadrel_norm = 2;
+
+/// Which cross field.
+pub type quadrel_field = i32;
+
+/// Laplace, then steps that keep singularities apart
+pub const QUADREL_FIELD_DIFFUSED: quadrel_field = 0;
+/// Laplace alone
+pub const QUADREL_FIELD_HARMONIC: quadrel_field = 1;
+
+/// How boundary edges are divided until the tolerance holds.
+pub type quadrel_subdivision = i32;
+
+/// where the error is the same on all edges of a chain; few elements
+pub const QUADREL_SUBDIVISION_EQUAL_ERROR: quadrel_subdivision = 0;
+/// at the middle; nothing is coarsened afterwards
+pub const QUADREL_SUBDIVISION_HALVING: quadrel_subdivision = 1;
+
+/// Options with their defaults.
+#[no_mangle]
+pub extern "C" fn quadrel_options_new() -> *mut quadrel_options {
+    Box::into_raw(Box::default())
+}
+
+/// Frees options.
+#[no_mangle]
+pub unsafe extern "C" fn quadrel_options_free(options: *mut quadrel_options) {
+    // SAFETY: the caller's promise (first comment of the header).
+    unsafe { free(options) }
+}
+
+/// Makes a change, unless it leaves a value out of range.
+pub(super) unsafe fn set(
+    options: *mut quadrel_options,
+    change: impl FnOnce(&mut Options) -> Result<(), Failure>,
+) -> quadrel_status {
+    guard(|| {
+        // SAFETY: the caller's promise (first comment of the header).
+        let own = unsafe { required_mut(options, "the options") }?;
+        let mut changed = own.options.clone();
+        change(&mut changed)?;
+        changed.check()?;
+        own.options = changed;
+        Ok(())
+    })
+}
+
+/// Polynomial order N of the elements, 1 to 32; default 5.
+#[no_mangle]
+pub unsafe extern "C" fn quadrel_options_set_order(
+    options: *mut quadrel_options,
+    order: i32,
+) -> quadrel_status {
+    // SAFETY: the caller's promise (first comment of the header).
+    unsafe {
+        set(options, |o| {
+            o.order = usize::try_from(order)
+                .map_err(|_| Failure::argument("the polynomial order", order, "1 to 32"))?;
+            Ok(())
+        })
+    }
+}
+
+fn norm_of(norm: quadrel_norm) -> Result<Norm, Failure> {
+    match norm {
+        QUADREL_NORM_L2 => Ok(Norm::L2),
+        QUADREL_NORM_H1 => Ok(Norm::H1),
+        QUADREL_NORM_MAX => Ok(Norm::Max),
+        _ => Err(Failure::argument("the norm", norm, "a QUADREL_NORM number")),
+    }
+}
+
+/// Largest error of each boundary edge against the exact curve, in the unit of norm (a QUADREL_NORM number).
+/// Default: relative 1e-5 in L2.
+#[no_mangle]
+pub unsafe extern "C" fn quadrel_options_set_tolerance(
+    options: *mut quadrel_options,
+    tolerance: f64,
+    norm: quadrel_norm,
+) -> quadrel_status {
+    // SAFETY: the caller's promise (first comment of the header).
+    unsafe {
+        set(options, |o| {
+            (o.tolerance, o.norm) = (Tolerance::Absolute(tolerance), norm_of(norm)?);
+            Ok(())
+        })
+    }
+}
+
+/// The same for the domain scaled to a bounding-box diagonal of 1 (of its least bounding box, so that turning
+/// the domain changes nothing).
+#[no_mangle]
+pub unsafe extern "C" fn quadrel_options_set_relative_tolerance(
+    options: *mut quadrel_options,
+    tolerance: f64,
+    norm: quadrel_norm,
+) -> quadrel_status {
+    // SAFETY: the caller's promise (first comment of the header).
+    unsafe {
+        set(options, |o| {
+            (o.tolerance, o.norm) = (Tolerance::Relative(tolerance), norm_of(norm)?);
+            Ok(())
+        })
+    }
+}
+
+/// Which cross field, a QUADREL_FIELD number; default QUADREL_FIELD_DIFFUSED.
+#[no_mangle]
+pub unsafe extern "C" fn quadrel_options_set_field(
+    options: *mut quadrel_options,
+    field: quadrel_field,
+) -> quadrel_status {
+    // SAFETY: the caller's promise (first comment of the header).
+    unsafe {
+        set(options, |o| {
+            o.field = match field {
+                QUADREL_FIELD_DIFFUSED => FieldMethod::Diffused,
+                QUADREL_FIELD_HARMONIC => FieldMethod::Harmonic,
+                _ => return Err(Failure::argument("the field", field, "a QUADREL_FIELD number")),
+            };
+            Ok(())
+        })
+    }
+}
+
+/// How boundary edges are divided, a QUADREL_SUBDIVISION number; default QUADREL_SUBDIVISION_EQUAL_ERROR.
+#[no_mangle]
+pub unsafe extern "C" fn quadrel_options_set_subdivision(
+    options: *mut quadrel_options,
+    subdivision: quadrel_subdivision,
+) -> quadrel_status {
+    // SAFETY: the caller's promise (first comment of the header).
+    unsafe {
+        set(options, |o| {
+            o.subdivision = match subdivision {
+                QUADREL_SUBDIVISION_EQUAL_ERROR => Subdivision::EqualError,
+                QUADREL_SUBDIVISION_HALVING => Subdivision::Halving,
+                _ => {
+                    let allowed = "a QUADREL_SUBDIVISION number";
+                    return Err(Failure::argument("the subdivision", subdivision, allowed));
+                }
+            };
+            Ok(())
+        })
+    }
+}
+
+/// A length, 0 for none.
+fn length(value: f64) -> Option<f64> {
+    (value != 0.0).then_some(value)
+}
+
+/// Largest wanted size of the elements; default 0: no limit.
+#[no_mangle]
+pub unsafe extern "C" fn quadrel_options_set_max_element_size(
+    options: *mut quadrel_options,
+    size: f64,
+) -> quadrel_status {
+    // SAFETY: the caller's promise (first comment of the header).
+    unsafe {
+        set(options, |o| {
+            o.max_element_size = length(size);
+            Ok(())
+        })
+    }
+}
+
+/// Wanted size of the base mesh's triangles; default 0: automatic.
+#[no_mangle]
+pub unsafe extern "C" fn quadrel_options_set_base_mesh_size(
+    options: *mut quadrel_options,
+    size: f64,
+) -> quadrel_status {
+    // SAFETY: the caller's promise (first comment of the header).
+    unsafe {
+        set(options, |o| {
+            o.base_mesh_size = length(size);
+            Ok(())
+        })
+    }
+}
+
+/// Share in (0, 1) of the best possible scaled Jacobian that coarsening takes no element below; default 0.8.
+#[no_mangle]
+pub unsafe extern "C" fn quadrel_options_set_quality_floor(
+    options: *mut quadrel_options,
+    floor: f64,
+) -> quadrel_status {
+    // SAFETY: the caller's promise (first comment of the header).
+    unsafe {
+        set(options, |o| {
+            o.quality_floor = floor;
+            Ok(())
+        })
+    }
+}
+
+/// Most elements allowed, at least 1; default 1000000. A mesh that needs more is QUADREL_ERROR_LAYOUT.
+#[no_mangle]
+pub unsafe extern "C" fn quadrel_options_set_max_elements(
+    options: *mut quadrel_options,
+    limit: usize,
+) -> quadrel_status {
+    // SAFETY: the caller's promise (first comment of the header).
+    unsafe {
+        set(options, |o| {
+            o.max_elements = limit;
+            Ok(())
+        })
+    }
+}
