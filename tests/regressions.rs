@@ -31,3 +31,11 @@ fn tangles_of_a_coast_come_undone() {
     let (elements, _) = mesh("coast/sea-aeolian.svg");
     assert!(elements <= 1400, "{elements} elements");
 }
+
+/// A five-valent singularity sat right before a tip to which the field gave no quad, and sent a separatrix into
+/// it: a later attempt gives every tip its quad.
+#[test]
+fn a_singularity_before_a_sharp_tip_becomes_the_tip_s_quad() {
+    let (elements, _) = mesh("icons/mdi/flag-variant-minus-outline-1.svg");
+    assert!(elements <= 40, "{elements} elements");
+}

@@ -25,6 +25,9 @@ pub enum Tips {
     Balanced,
     /// One: for a second try, when lines ran into a tip.
     OneQuad,
+    /// One at sharper tips too: when a five-valent singularity sits right before a tip without a quad, the two
+    /// together are a tip with one.
+    AllOneQuad,
 }
 
 /// The border polygon as the field sees it.
@@ -75,12 +78,12 @@ impl Border {
                 Place::Junction(j) => Some((boundary.junctions[j as usize].angle, v)),
                 _ => None,
             })
-            .filter(|tip| tip.0 > TIP_DOUBT[0])
+            .filter(|tip| tip.0 > TIP_DOUBT[0] || rule == Tips::AllOneQuad)
             .collect();
         tips.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let missing = match rule {
             Tips::Balanced => (corners - 4 * euler).max(0) as usize,
-            Tips::OneQuad => tips.len(),
+            Tips::OneQuad | Tips::AllOneQuad => tips.len(),
         };
         for (_, v) in tips.into_iter().take(missing) {
             self.quads[v as usize] = 1;

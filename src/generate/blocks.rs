@@ -54,7 +54,11 @@ pub(super) fn field(
 ) -> Result<Field> {
     let usual = base_mesh::usual_size(boundary);
     let least = LEAST_REFINEMENT * request.size.map_or(usual, |h| h.min(usual));
-    let tips = if stages.attempts <= 1 { Tips::Balanced } else { Tips::OneQuad };
+    let tips = match stages.attempts {
+        0 | 1 => Tips::Balanced,
+        2 => Tips::OneQuad,
+        _ => Tips::AllOneQuad,
+    };
     let mut round = 0;
     loop {
         let mesh = watch.run(stages, Stage::BaseMesh, |_| match given {
