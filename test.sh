@@ -59,11 +59,11 @@ step "C and C++"
 interface="$PWD/target/interface"
 configure() { cmake -S cpp_tests -B "$@" -DQUADREL_CARGO_TARGET_DIR="$interface/cargo" >/dev/null; }
 configure "$interface/tests"
-cmake --build "$interface/tests"
+cmake --build "$interface/tests" --parallel 2
 ctest --test-dir "$interface/tests" --output-on-failure --parallel 2
 step "C and C++ with the address and undefined-behaviour sanitizers"
 configure "$interface/sanitized" -DQUADREL_TEST_SANITIZERS=address,undefined
-cmake --build "$interface/sanitized"
+cmake --build "$interface/sanitized" --parallel 2
 ctest --test-dir "$interface/sanitized" --output-on-failure --parallel 2
 
 step "60 seconds of fuzzing through the C interface"

@@ -480,6 +480,28 @@ double match(const std::vector<Singularity>& ours, const std::vector<Singularity
   return count == ours.size() && count == theirs.size() ? worst : HUGE_VAL;
 }
 
+// The larger set without as many three-five pairs as it has too many, the closest ones first, if they are at most two
+// edges apart: what places are compared to. The Gingerbread man's face is nearly symmetric, its three-valent
+// point above the mouth on either side of the axis; base meshes of 4,000 to 45,000 triangles have one there, or two
+// and a five-valent point between.
+std::vector<Singularity> without_pairs(std::vector<Singularity> set, std::size_t count) {
+  while (set.size() >= count + 2) {
+    double closest = 2;
+    std::size_t a = 0, b = 0;
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      for (std::size_t k = 0; k < set.size(); ++k) {
+        const double apart = distance(set[i].point, set[k].point) / std::max(set[i].edge, set[k].edge);
+        if (set[i].valence == 3 && set[k].valence == 5 && apart <= closest) closest = apart, a = i, b = k;
+      }
+    }
+    if (a == b) break;
+    std::printf("  a three- and a five-valent point %.2f edges apart count as none\n", closest);
+    set.erase(set.begin() + static_cast<std::ptrdiff_t>(std::max(a, b)));
+    set.erase(set.begin() + static_cast<std::ptrdiff_t>(std::min(a, b)));
+  }
+  return set;
+}
+
 // The best match of all rotations about the origin that bring one of theirs to the direction of one of ours.
 double match_rotated(const std::vector<Singularity>& ours, const std::vector<Singularity>& theirs) {
   double best = HUGE_VAL;
@@ -512,7 +534,8 @@ void check(const Example& example, const std::string& folder) {
   const quadrel::Mesh mesh = quadrel::generate(domain, options, &given);
   const Triangles used = base_of(given);
   CHECK(used.triangles == theirs.triangles);
-  const auto ours = singularities_of(own), found = singularities_of(given);
+  const auto all = singularities_of(own), all_theirs = singularities_of(given);
+  const auto ours = without_pairs(all, all_theirs.size()), found = without_pairs(all_theirs, all.size());
   const double apart = example.round ? match_rotated(ours, found) : match(ours, found);
   CHECK(ours.size() == found.size() && apart <= 2);
   std::printf("  %zu singularities, on CGAL's triangulation %zu; %.2f edges apart; mesh of %zu elements\n", ours.size(), found.size(), apart,
