@@ -6,6 +6,7 @@ use crate::domain::{Boundary, BoundaryPoint, Place};
 use crate::error::{Error, Result};
 use crate::layout::QuadLayout;
 use crate::mesh::{scaled_jacobian_ceiling, BoundaryError, BoundaryTolerance, QuadMesh, Vertex};
+use crate::numerics::tolerances::{OFF_POWERS, START_GRID};
 use crate::numerics::Point;
 use crate::options::{Options, Subdivision};
 use crate::progress::Stage;
@@ -20,10 +21,6 @@ const ROUNDS: usize = 5;
 pub(super) const MOST_WORK: u64 = 3_000_000;
 /// Edge lengths in wanted sizes above which a chord is divided.
 const TOO_LONG: f64 = 2.5;
-/// Spacing of the grid on which the layout's vertices start, in the shortest edge there. 2^-10.
-const START_GRID: f64 = 1.0 / 1024.0;
-/// Keeps lengths of simple ratio to the diagonal away from powers of two.
-const OFF_POWERS: f64 = 1.37;
 /// Quads above which strips finer than wanted are ended before anything is optimised, ...
 const LARGE: usize = 1500;
 /// ... if no more than this share of the quads is left.

@@ -173,6 +173,14 @@ pub const DECISION_GRID: f64 = 1.0 / 1024.0;
 /// The same for the mesh that is kept. 2^-18.
 pub const FINAL_GRID: f64 = 1.0 / 262_144.0;
 
+/// Grid on which the layout's vertices start, relative to the shortest edge there: coarse against what the
+/// streamlines make of the input's rounding errors (1e-10). 2^-10.
+pub const START_GRID: f64 = 1.0 / 1024.0;
+
+/// A factor on lengths whose next power of two is taken as a grid: simple ratios to the diagonal, which are common,
+/// would stand at the jump from one power to the next, where rounding decides.
+pub const OFF_POWERS: f64 = 1.37;
+
 /// Sizes and errors that differ by less than this share are equally large when changes of a mesh are put
 /// in order: in symmetric domains many are equal up to rounding.
 pub const ORDER_TIE: f64 = 1e-6;

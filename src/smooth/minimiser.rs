@@ -2,6 +2,8 @@
 //!
 //! Reference: J. Nocedal, S. Wright, *Numerical Optimization*, 2006, §7.2 (two-loop recursion).
 
+use crate::numerics::tolerances::OFF_POWERS;
+
 /// Pairs kept.
 const MEMORY: usize = 10;
 /// Sufficient decrease (Armijo).
@@ -81,9 +83,6 @@ fn on_grid(x: f64, cell: f64) -> f64 {
         x
     }
 }
-
-/// Keeps lengths of simple ratio to the diagonal away from powers of two.
-const OFF_POWERS: f64 = 1.37;
 
 impl Lbfgs {
     fn resize(&mut self, n: usize) {

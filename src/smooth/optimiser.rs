@@ -262,8 +262,8 @@ impl<'a> Optimiser<'a> {
     }
 
     /// Optimises around the elements whose scaled Jacobian is below `floor`, each group with some rings by
-    /// itself, as often as that helps: on large meshes, on which the whole cannot take all steps. What
-    /// gets worse is undone. The work spent.
+    /// itself, as often as that helps: one poor place needs steps that all others would waste. What gets worse is
+    /// undone. The work spent.
     pub fn lift(&self, mesh: &mut QuadMesh, floor: f64) -> u64 {
         lift(self, mesh, floor)
     }
