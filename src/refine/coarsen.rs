@@ -227,7 +227,13 @@ impl Coarsening<'_> {
     /// Tries a merge, of the quads `at`; the outcome and the element evaluations spent.
     fn trial(&self, merge: Merge, at: &[u32]) -> (Outcome, u64) {
         let mut work = 0;
-        let outcome = settle(self.optimiser, merge, &|rings| self.limits_at(at, rings), &mut work);
+        let outcome = settle(
+            self.optimiser,
+            merge,
+            self.limits.scaled_jacobian,
+            &|rings| self.limits_at(at, rings),
+            &mut work,
+        );
         (outcome, work)
     }
 

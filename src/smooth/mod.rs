@@ -31,5 +31,5 @@ mod untangle;
 mod walk;
 
 pub use laplacian::equal_spacing;
-pub use optimiser::{Effort, Optimiser, Outcome};
+pub use optimiser::{Aim, Effort, Optimiser, Outcome};
 pub use quality::{ElementQuality, Quality};

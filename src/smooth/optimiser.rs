@@ -39,6 +39,15 @@ pub struct Outcome {
     pub work: u64,
 }
 
+/// When a trial may end early, by the least scaled Jacobian that the optimiser's samples see.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aim {
+    /// Reached together with the tolerance: well enough.
+    pub enough: f64,
+    /// Not reached by the first power, which brings most of what there is to gain: given up.
+    pub hopeless: f64,
+}
+
 /// Step bound of the minimiser, in natural lengths.
 const REACH: f64 = 0.5;
 
@@ -234,14 +243,25 @@ impl<'a> Optimiser<'a> {
     /// a quad outside shares them. Once all samples are positive they stay so. If nothing valid is
     /// found the mesh is left at the last try.
     pub fn optimise(&self, mesh: &mut QuadMesh, active: Option<&[u32]>, effort: Effort) -> Outcome {
+        self.optimise_until(mesh, active, effort, None)
+    }
+
+    /// The same, ending as soon as `aim` says so: for trials, of which most are clear early.
+    pub fn optimise_until(
+        &self,
+        mesh: &mut QuadMesh,
+        active: Option<&[u32]>,
+        effort: Effort,
+        aim: Option<Aim>,
+    ) -> Outcome {
         let start = self.problem(&self.energy, mesh, active, true).unknowns;
         let held = self.quality_of(mesh, active).valid();
         let mut work = 0;
-        let mut state = self.run(&self.energy, mesh, active, effort, &mut work);
+        let mut state = self.run(&self.energy, mesh, active, effort, aim, &mut work);
         let mut quality = self.quality_of(mesh, active);
         if state.valid && !quality.valid() {
             // Inverted between the samples: denser ones.
-            state = self.run(&self.dense, mesh, active, effort, &mut work);
+            state = self.run(&self.dense, mesh, active, effort, aim, &mut work);
             quality = self.quality_of(mesh, active);
         }
         if held && !quality.valid() {
@@ -286,6 +306,7 @@ impl<'a> Optimiser<'a> {
         mesh: &mut QuadMesh,
         active: Option<&[u32]>,
         effort: Effort,
+        aim: Option<Aim>,
         work: &mut u64,
     ) -> State {
         let schedule = effort.schedule_for(active.map_or(mesh.quads.len(), <[u32]>::len));
@@ -328,7 +349,7 @@ impl<'a> Optimiser<'a> {
         }
         if valid {
             problem.grid = schedule.grid;
-            self.improve(&mut problem, &mut lbfgs, &schedule, work);
+            self.improve(&mut problem, &mut lbfgs, &schedule, aim, work);
         }
         problem.store(mesh);
         State::of(&mut problem, valid)
@@ -336,7 +357,14 @@ impl<'a> Optimiser<'a> {
 
     /// Raises the power of the shape energy from a valid state. What comes out keeps the tolerance if
     /// the start or any round did, and has the best quality among those that do.
-    fn improve(&self, problem: &mut Problem, lbfgs: &mut Lbfgs, schedule: &Schedule, work: &mut u64) {
+    fn improve(
+        &self,
+        problem: &mut Problem,
+        lbfgs: &mut Lbfgs,
+        schedule: &Schedule,
+        aim: Option<Aim>,
+        work: &mut u64,
+    ) {
         // Better: closer to the tolerance while above it, then the quality.
         let rank =
             |p: &Problem| (p.error_ratio.max(1.0), -p.scaled_jacobian - MEAN_WEIGHT * p.mean_scaled_jacobian);
@@ -344,7 +372,7 @@ impl<'a> Optimiser<'a> {
         let start = *work;
         let limits = Limits { steps: schedule.steps, progress: schedule.progress };
         let rescue = std::iter::repeat_n(&8, RESCUES);
-        for (round, power) in schedule.powers.iter().chain(rescue).enumerate() {
+        'powers: for (round, power) in schedule.powers.iter().chain(rescue).enumerate() {
             if round >= schedule.powers.len() && problem.error_ratio <= 1.0 {
                 break;
             }
@@ -360,9 +388,15 @@ impl<'a> Optimiser<'a> {
                     best.0 = now;
                     best.1.clone_from(&problem.unknowns);
                 }
+                if aim.is_some_and(|aim| problem.error_ratio <= 1.0 && problem.scaled_jacobian >= aim.enough) {
+                    break 'powers;
+                }
                 if after > WORKED_OFF * before {
                     break;
                 }
+            }
+            if round == 0 && aim.is_some_and(|aim| problem.scaled_jacobian < aim.hopeless) {
+                break;
             }
         }
         if best.0 < rank(problem) {
