@@ -11,7 +11,7 @@ use crate::numerics::Point;
 use crate::options::{Options, Subdivision};
 use crate::progress::Stage;
 use crate::refine::{self, Limits};
-use crate::smooth::{Effort, Optimiser};
+use crate::smooth::{Aim, Effort, Optimiser};
 use crate::stages::{Round, Stages};
 use std::collections::HashMap;
 
@@ -25,6 +25,8 @@ const TOO_LONG: f64 = 2.5;
 const LARGE: usize = 1500;
 /// ... if no more than this share of the quads is left.
 const WORTH: f64 = 0.7;
+/// Multiple of coarsening's floor to which a mesh is smoothed before it.
+const AMPLE: f64 = 1.05;
 /// Most elements, as a multiple of the first round's, before another layout is tried.
 const MOST_GROWTH: usize = 3;
 
@@ -54,6 +56,10 @@ pub(super) fn refine_and_smooth(
     mesh = watch.run(stages, Stage::Refine, |_| refine::meet_tolerance(mesh, boundary, &error, options))?;
     note(stages, &optimiser, &mesh, "subdivide");
     let most = MOST_GROWTH * mesh.quads.len();
+    let floor = options.quality_floor * scaled_jacobian_ceiling(boundary);
+    // What coarsening changes again need not be better than it asks for.
+    let coarsens = options.subdivision == Subdivision::EqualError;
+    let aim = coarsens.then_some(Aim { enough: AMPLE * floor, hopeless: f64::NEG_INFINITY });
     for round in 0..ROUNDS {
         // Step 8: smooth, and untangle if need be.
         let holds = |mesh: &QuadMesh| {
@@ -63,8 +69,9 @@ pub(super) fn refine_and_smooth(
         if round > 0 && holds(&mesh) {
             break;
         }
-        let outcome =
-            watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut mesh, None, Effort::Full)))?;
+        let outcome = watch.run(stages, Stage::Smooth, |_| {
+            Ok(optimiser.optimise_until(&mut mesh, None, Effort::Full, aim))
+        })?;
         watch.work += outcome.work;
         note(stages, &optimiser, &mesh, "smooth");
         // Step 9: again where it does not hold yet. Divided edges keep their shape, so what is valid stays so.
@@ -99,8 +106,7 @@ pub(super) fn refine_and_smooth(
         let at = mesh.vertices[mesh.quads[worst][0] as usize].point;
         return Err(Error::InvalidElement { jacobian: quality.min_scaled_jacobian, at });
     }
-    let floor = options.quality_floor * scaled_jacobian_ceiling(boundary);
-    if options.subdivision == Subdivision::EqualError && watch.work <= MOST_WORK {
+    if coarsens && watch.work <= MOST_WORK {
         let size = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
         let limits = Limits { size, ..Limits::new(floor) };
         let progress = watch.coarsening();

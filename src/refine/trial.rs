@@ -77,7 +77,7 @@ pub(super) fn settle(
         };
         let outcome = optimiser.optimise_until(&mut patch.mesh, Some(&active), effort, Some(aim));
         *work += outcome.work;
-        let quality = optimiser.quality_of(&patch.mesh, Some(&active));
+        let quality = outcome.quality;
         let others = quality.min_jacobian_ratio >= limits.jacobian_ratio
             && quality.error_ratio <= 1.0
             && quality.elements.iter().all(|e| e.size <= limits.size);

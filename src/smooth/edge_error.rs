@@ -8,7 +8,7 @@ use crate::numerics::Vector;
 
 /// Errors far below the limit, as a share of it, count as this: the barrier's root would otherwise
 /// turn rounding errors of straight edges into slopes.
-const NEGLIGIBLE: f64 = 1e-3;
+pub(super) const NEGLIGIBLE: f64 = 1e-3;
 
 /// The square of an edge's L2 error, and its derivatives with respect to both ends.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -25,7 +25,7 @@ pub enum Effort {
 }
 
 /// What an optimisation left.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     /// No sample of the optimised elements is inverted.
     pub valid: bool,
@@ -37,6 +37,8 @@ pub struct Outcome {
     pub error_ratio: f64,
     /// Evaluations of elements, those of order 5 counting 1.
     pub work: u64,
+    /// Quality of the optimised elements, in their order, and of the boundary edges on them.
+    pub quality: Quality,
 }
 
 /// When a trial may end early, by the least scaled Jacobian that the optimiser's samples see.
@@ -255,7 +257,6 @@ impl<'a> Optimiser<'a> {
         aim: Option<Aim>,
     ) -> Outcome {
         let start = self.problem(&self.energy, mesh, active, true).unknowns;
-        let held = self.quality_of(mesh, active).valid();
         let mut work = 0;
         let mut state = self.run(&self.energy, mesh, active, effort, aim, &mut work);
         let mut quality = self.quality_of(mesh, active);
@@ -264,13 +265,18 @@ impl<'a> Optimiser<'a> {
             state = self.run(&self.dense, mesh, active, effort, aim, &mut work);
             quality = self.quality_of(mesh, active);
         }
-        if held && !quality.valid() {
+        if !quality.valid() {
+            // What was valid stays so.
+            let mut before = mesh.clone();
             let mut problem = self.problem(&self.energy, mesh, active, true);
             problem.unknowns = start;
             problem.refresh();
-            state = State::of(&mut problem, true);
-            problem.store(mesh);
-            quality = self.quality_of(mesh, active);
+            problem.store(&mut before);
+            let held = self.quality_of(&before, active);
+            if held.valid() {
+                state = State::of(&mut problem, true);
+                (*mesh, quality) = (before, held);
+            }
         }
         Outcome {
             valid: quality.valid(),
@@ -278,6 +284,7 @@ impl<'a> Optimiser<'a> {
             min_scaled_jacobian: quality.min_scaled_jacobian,
             error_ratio: state.error_ratio,
             work,
+            quality,
         }
     }
 

@@ -9,9 +9,9 @@ pub(super) const MAX_SAMPLES: usize = 12;
 /// Most bubbles of an interior edge; edges of higher degree gained nothing measurable.
 pub(super) const MAX_BUBBLES: usize = 4;
 
-/// Quadrature points for the boundary error of one edge. Few, for the barrier only: what it misses at
-/// small kinks the final measure, which is another, sees.
-const ERROR_POINTS: usize = 16;
+/// Quadrature points for the boundary error of one edge beyond its order. Few, for the barrier only: what it
+/// misses at small kinks the final measure, which is another, sees.
+const MORE_ERROR_POINTS: usize = 5;
 
 /// Samples, bubbles, Gauss-Lobatto nodes and quadrature on [0, 1]. Matrices are stored by columns:
 /// all samples of one unknown after another.
@@ -59,7 +59,7 @@ impl Reference {
         let lobatto = GaussLobatto::new(order);
         let at = GaussLobatto::new(samples - 1).nodes;
         let interpolation = Interpolation::new(lobatto.nodes.clone());
-        let gauss = GaussLegendre::new(ERROR_POINTS.max(order + 5));
+        let gauss = GaussLegendre::new(order + MORE_ERROR_POINTS);
         let samples = unit(&at);
         let bubbles = (order - 1).min(MAX_BUBBLES);
         let table: Vec<(f64, f64)> =

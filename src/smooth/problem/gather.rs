@@ -63,7 +63,7 @@ impl Problem<'_> {
                     extra -= length_weight * (now / length).ln();
                     ends[0] += length_weight / now;
                     ends[1] -= length_weight / now;
-                    if self.tolerance.is_some() {
+                    if self.tolerance.is_some() && weight > 0.0 {
                         let chain = &self.boundary.chains[chain as usize];
                         let e2 = squared_error(self.reference, chain, start, now, own);
                         let Some((b, slope)) = barrier(self.reference.order, e2.value, limit) else {

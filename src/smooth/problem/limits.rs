@@ -2,7 +2,7 @@
 
 use super::sampling::arc_lengths;
 use super::{LocalElement, Problem, Shape, EVENNESS};
-use crate::smooth::edge_error::squared_error;
+use crate::smooth::edge_error::{squared_error, NEGLIGIBLE};
 use crate::smooth::kernel::{self, Sampled, Sides, Target};
 
 /// The barrier stands this much before the tolerance.
@@ -77,9 +77,12 @@ impl Problem<'_> {
                 } else {
                     (ROOM * now, RESCUE_WEIGHT)
                 };
-                if now > 1e-3 * wanted {
+                if now > NEGLIGIBLE * wanted {
                     let seen = squared_error(self.reference, chain, start, *length, own).value.sqrt();
                     *limit *= seen / now;
+                } else {
+                    // Straight or nearly: no barrier, and no quadrature.
+                    *weight = 0.0;
                 }
             }
         }
