@@ -131,7 +131,7 @@ impl Effort {
                 progress: 1e-2,
                 repeats: 1,
                 ways: &[(Prepare::Nothing, true)],
-                untangle_rounds: 6,
+                untangle_rounds: 3,
                 untangle_steps: 25,
                 untangle_decrease: 0.5,
                 patient: false,
