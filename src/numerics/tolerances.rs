@@ -192,3 +192,7 @@ pub const JUNCTION_MATCH: f64 = 1e-9;
 /// Most that a border vertex of the caller's base mesh may be off its place on the curve, relative to its
 /// shorter border edge: half way along a chord that turns by 0.8 rad, where refiners put vertices.
 pub const GIVEN_OFF_CURVE: f64 = 0.2;
+
+/// Farthest that a straight chain's table may be off the segment between its ends, relative to the chain's length:
+/// rounding, also far from the caller's origin. Edges on it count as free of any boundary error.
+pub const STRAIGHT_CHAIN: f64 = 1e-11;

@@ -21,7 +21,7 @@ pub(super) fn lift(optimiser: &Optimiser, mesh: &mut QuadMesh, floor: f64) -> u6
             }
             let saved = Saved::of(mesh, &part);
             let before = optimiser.quality_of(mesh, Some(&part));
-            work += optimiser.optimise(mesh, Some(&part), Effort::Full).work;
+            work += optimiser.optimise(mesh, Some(&part), Effort::Final).work;
             let after = optimiser.quality_of(mesh, Some(&part));
             if !after.valid()
                 || after.min_scaled_jacobian < before.min_scaled_jacobian

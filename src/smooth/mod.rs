@@ -27,6 +27,7 @@ mod problem;
 mod quality;
 mod reference;
 mod straight;
+mod straightness;
 mod untangle;
 mod walk;
 

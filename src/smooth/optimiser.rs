@@ -2,12 +2,13 @@
 
 use super::kernel::Measure;
 use super::lift::lift;
-use super::local::{untangle_locally, Elements};
+use super::local::{untangle_locally, Elements, Saved};
 use super::minimiser::{Lbfgs, Limits};
 use super::problem::Problem;
 use super::quality::{self, ElementQuality, Quality};
 use super::reference::Reference;
 use super::straight::untangle_straight;
+use super::straightness::Straightness;
 use super::untangle::untangle;
 use crate::domain::Boundary;
 use crate::mesh::{BoundaryError, BoundaryTolerance, QuadMesh};
@@ -18,9 +19,10 @@ use crate::numerics::tolerances::{DECISION_GRID, FINAL_GRID};
 pub enum Effort {
     /// For a trial that may be rolled back: valid and fair.
     Quick,
-    /// For a mesh that is worked on.
+    /// For a mesh that is worked on. Here, too, straight interior edges away from curved boundaries stay straight:
+    /// elements without curved edges cost a tenth.
     Full,
-    /// For a mesh to be kept, from a valid one: the same on a finer grid.
+    /// For a mesh to be kept, from a valid one: the same on a finer grid, and all interior edges may bend.
     Final,
 }
 
@@ -184,17 +186,19 @@ pub struct Optimiser<'a> {
     energy: Reference,
     dense: Reference,
     measuring: Reference,
+    straightness: Straightness<'static>,
 }
 
 /// Curved elements, their boundary vertices fixed.
 struct Curved<'a> {
     optimiser: &'a Optimiser<'a>,
     reference: &'a Reference,
+    effort: Effort,
 }
 
 impl Elements for Curved<'_> {
     fn problem<'b>(&'b self, mesh: &QuadMesh, active: &[u32]) -> Problem<'b> {
-        self.optimiser.problem(self.reference, mesh, Some(active), false)
+        self.optimiser.problem(self.reference, mesh, Some(active), false, self.effort)
     }
 
     fn schedule(&self, effort: Effort, quads: usize) -> Schedule {
@@ -218,6 +222,7 @@ impl<'a> Optimiser<'a> {
             energy: Reference::for_energy(order),
             dense: Reference::for_dense_energy(order),
             measuring: Reference::for_quality(order),
+            straightness: Straightness::new(boundary),
         }
     }
 
@@ -256,7 +261,15 @@ impl<'a> Optimiser<'a> {
         effort: Effort,
         aim: Option<Aim>,
     ) -> Outcome {
-        let start = self.problem(&self.energy, mesh, active, true).unknowns;
+        let all: Vec<u32>;
+        let own = match active {
+            Some(list) => list,
+            None => {
+                all = (0..mesh.quads.len() as u32).collect();
+                &all
+            }
+        };
+        let before = Saved::of(mesh, own);
         let mut work = 0;
         let mut state = self.run(&self.energy, mesh, active, effort, aim, &mut work);
         let mut quality = self.quality_of(mesh, active);
@@ -267,15 +280,14 @@ impl<'a> Optimiser<'a> {
         }
         if !quality.valid() {
             // What was valid stays so.
-            let mut before = mesh.clone();
-            let mut problem = self.problem(&self.energy, mesh, active, true);
-            problem.unknowns = start;
-            problem.refresh();
-            problem.store(&mut before);
-            let held = self.quality_of(&before, active);
+            let after = Saved::of(mesh, own);
+            before.restore(mesh);
+            let held = self.quality_of(mesh, active);
             if held.valid() {
-                state = State::of(&mut problem, true);
-                (*mesh, quality) = (before, held);
+                state = State::of(&mut self.problem(&self.energy, mesh, active, true, effort), true);
+                quality = held;
+            } else {
+                after.restore(mesh);
             }
         }
         Outcome {
@@ -302,8 +314,14 @@ impl<'a> Optimiser<'a> {
         mesh: &QuadMesh,
         active: Option<&[u32]>,
         slide: bool,
+        effort: Effort,
     ) -> Problem<'b> {
-        Problem::new(self.boundary, reference, self.error.as_ref(), mesh, active, slide)
+        let tolerance = self.error.as_ref();
+        let straightness = match effort {
+            Effort::Quick | Effort::Full => &self.straightness,
+            Effort::Final => &self.straightness.everywhere(),
+        };
+        Problem::new(self.boundary, reference, tolerance, mesh, active, slide, straightness)
     }
 
     /// Untangles if need be, then improves.
@@ -318,12 +336,12 @@ impl<'a> Optimiser<'a> {
     ) -> State {
         let schedule = effort.schedule_for(active.map_or(mesh.quads.len(), <[u32]>::len));
         let mut lbfgs = Lbfgs::default();
-        let mut problem = self.problem(reference, mesh, active, true);
+        let mut problem = self.problem(reference, mesh, active, true, effort);
         let mut valid = problem.least_jacobian() > 0.0;
         if !valid && active.is_none() {
-            untangle_straight(self.boundary, &self.linear, mesh, effort, work);
-            untangle_locally(&Curved { optimiser: self, reference }, mesh, effort, work);
-            problem = self.problem(reference, mesh, active, true);
+            untangle_straight(self.boundary, &self.linear, &self.straightness, mesh, effort, work);
+            untangle_locally(&Curved { optimiser: self, reference, effort }, mesh, effort, work);
+            problem = self.problem(reference, mesh, active, true, effort);
             valid = problem.least_jacobian() > 0.0;
         }
         if !valid {
@@ -332,7 +350,7 @@ impl<'a> Optimiser<'a> {
                     break;
                 }
                 // Boundary vertices are only prepared where they can slide.
-                problem = self.problem(reference, mesh, active, slide || prepare == Prepare::Spread);
+                problem = self.problem(reference, mesh, active, slide || prepare == Prepare::Spread, effort);
                 match prepare {
                     Prepare::Nothing => {}
                     Prepare::Flatten => problem.flatten(FLATTEN_SWEEPS),
@@ -341,7 +359,7 @@ impl<'a> Optimiser<'a> {
                         problem.flatten(FLATTEN_SWEEPS);
                         if !slide {
                             problem.store(mesh);
-                            problem = self.problem(reference, mesh, active, false);
+                            problem = self.problem(reference, mesh, active, false, effort);
                         }
                     }
                 }
@@ -351,7 +369,7 @@ impl<'a> Optimiser<'a> {
                     break;
                 }
             }
-            problem = self.problem(reference, mesh, active, true);
+            problem = self.problem(reference, mesh, active, true, effort);
             valid = problem.least_jacobian() > 0.0;
         }
         if valid {
@@ -395,7 +413,8 @@ impl<'a> Optimiser<'a> {
                     best.0 = now;
                     best.1.clone_from(&problem.unknowns);
                 }
-                if aim.is_some_and(|aim| problem.error_ratio <= 1.0 && problem.scaled_jacobian >= aim.enough) {
+                if aim.is_some_and(|aim| problem.error_ratio <= 1.0 && problem.scaled_jacobian >= aim.enough)
+                {
                     break 'powers;
                 }
                 if after > WORKED_OFF * before {
@@ -436,7 +455,7 @@ impl<'a> Optimiser<'a> {
 
     /// Quality of one quad.
     pub fn element_quality(&self, mesh: &QuadMesh, quad: u32) -> ElementQuality {
-        quality::element(self.boundary, &self.measuring, mesh, quad)
+        quality::element(self.boundary, &self.measuring, &self.straightness, mesh, quad)
     }
 
     /// Error of an edge divided by the tolerance; 0 inside or without a tolerance.

@@ -1,6 +1,7 @@
 //! Quality of elements by sampling; the proof of validity is made elsewhere.
 
 use super::reference::{bubble, Reference};
+use super::straightness::Straightness;
 use super::walk::walk;
 use crate::domain::Boundary;
 use crate::mesh::QuadMesh;
@@ -76,13 +77,38 @@ fn edge_samples(boundary: &Boundary, reference: &Reference, mesh: &QuadMesh, edg
     reference.samples.iter().map(sample).collect()
 }
 
+/// Quality of a quad with straight sides: det J is linear and the angle of its columns monotonic along each side,
+/// so that the corners have the extremes.
+fn plain(mesh: &QuadMesh, quad: u32) -> ElementQuality {
+    let p = mesh.quads[quad as usize].map(|v| mesh.vertices[v as usize].point);
+    let sides = [0, 1, 2, 3].map(|i| p[(i + 1) % 4] - p[i]);
+    let length = sides.map(|s| s.norm());
+    let (mut scaled, mut least, mut most) = (f64::INFINITY, f64::INFINITY, 0.0f64);
+    for i in 0..4 {
+        let before = (i + 3) % 4;
+        let det = cross(sides[before], sides[i]);
+        scaled = scaled.min(det / (length[before] * length[i]).max(f64::MIN_POSITIVE));
+        least = least.min(det);
+        most = most.max(det.abs());
+    }
+    ElementQuality {
+        scaled_jacobian: scaled,
+        jacobian_ratio: least / most.max(f64::MIN_POSITIVE),
+        size: 0.5 * (length[0] + length[2]).max(length[1] + length[3]),
+    }
+}
+
 /// Quality of quad `quad`.
 pub(super) fn element(
     boundary: &Boundary,
     reference: &Reference,
+    straightness: &Straightness,
     mesh: &QuadMesh,
     quad: u32,
 ) -> ElementQuality {
+    if mesh.quad_edges[quad as usize].into_iter().all(|e| straightness.holds_now(mesh, e)) {
+        return plain(mesh, quad);
+    }
     let corners = mesh.quads[quad as usize];
     let starts = [corners[0], corners[1], corners[3], corners[0]];
     let side = |i: usize| {

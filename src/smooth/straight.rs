@@ -11,6 +11,7 @@ use super::minimiser::{Lbfgs, Limits};
 use super::optimiser::{Effort, Schedule};
 use super::problem::Problem;
 use super::reference::Reference;
+use super::straightness::Straightness;
 use super::untangle::untangle;
 use crate::domain::Boundary;
 use crate::mesh::QuadMesh;
@@ -25,11 +26,13 @@ const REACH: f64 = 0.5;
 struct Straight<'a> {
     boundary: &'a Boundary,
     reference: &'a Reference,
+    straightness: &'a Straightness<'a>,
 }
 
 impl Elements for Straight<'_> {
     fn problem<'a>(&'a self, mesh: &QuadMesh, active: &[u32]) -> Problem<'a> {
-        Problem::new(self.boundary, self.reference, None, mesh, Some(active), false)
+        let straightness = self.straightness;
+        Problem::new(self.boundary, self.reference, None, mesh, Some(active), false, straightness)
     }
 
     fn schedule(&self, effort: Effort, quads: usize) -> Schedule {
@@ -47,11 +50,12 @@ impl Elements for Straight<'_> {
 pub(super) fn untangle_straight(
     boundary: &Boundary,
     linear: &Reference,
+    straightness: &Straightness,
     mesh: &mut QuadMesh,
     effort: Effort,
     work: &mut u64,
 ) {
-    let elements = Straight { boundary, reference: linear };
+    let elements = Straight { boundary, reference: linear, straightness };
     if !(0..mesh.quads.len() as u32).any(|q| elements.inverted(mesh, q)) {
         return;
     }
@@ -59,7 +63,7 @@ pub(super) fn untangle_straight(
     straight.edges.iter_mut().for_each(|e| e.bubbles.clear());
     let left = untangle_locally(&elements, &mut straight, effort, work);
     let schedule = effort.schedule_for_straight(mesh.quads.len());
-    let mut problem = Problem::new(boundary, linear, None, &straight, None, false);
+    let mut problem = Problem::new(boundary, linear, None, &straight, None, false, straightness);
     let mut lbfgs = Lbfgs::default();
     if left > 0 && !untangle(&mut problem, &mut lbfgs, &schedule, work) {
         return;

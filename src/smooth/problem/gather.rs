@@ -15,12 +15,12 @@ impl Problem<'_> {
         let n = self.reference.nodes.len();
         let mut extra = 0.0;
         gradient.fill(0.0);
-        self.vertices.iter_mut().for_each(|v| v.gradient = Vector::zeros());
         for (edge, g) in self.edges.iter().zip(self.adjoint.chunks_exact(4 * k)) {
             if !edge.moves {
                 continue;
             }
             match edge.shape {
+                Shape::Interior { .. } if !edge.sampled => {}
                 Shape::Interior { unknown } => {
                     let (mut at_a, mut at_b) = (Vector::zeros(), Vector::zeros());
                     for (i, t) in self.reference.samples.iter().enumerate() {
@@ -46,7 +46,8 @@ impl Problem<'_> {
                     let [start, end] = arc_lengths(x, unknowns, offsets);
                     let own = &self.nodes[nodes as usize..nodes as usize + n];
                     let mut ends = [0.0; 2];
-                    for (i, [_, tangent]) in own.iter().enumerate() {
+                    // Unsampled, it belongs to plain elements, which move its vertices themselves.
+                    for (i, [_, tangent]) in own.iter().enumerate().filter(|_| edge.sampled) {
                         let v = &self.reference.lagrange[i * k..(i + 1) * k];
                         let s = &self.reference.lagrange_slope[i * k..(i + 1) * k];
                         let mut at = Vector::zeros();

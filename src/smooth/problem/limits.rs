@@ -1,7 +1,7 @@
 //! What stays constant during a minimisation: aspect ratios, weights, error limits.
 
 use super::sampling::arc_lengths;
-use super::{LocalElement, Problem, Shape, EVENNESS};
+use super::{LocalEdge, LocalElement, Problem, Shape, EVENNESS};
 use crate::smooth::edge_error::{squared_error, NEGLIGIBLE};
 use crate::smooth::kernel::{self, Sampled, Sides, Target};
 
@@ -26,8 +26,15 @@ impl Problem<'_> {
     /// Length of each local edge as sampled last.
     fn lengths(&self) -> Vec<f64> {
         let k = self.reference.samples.len();
-        let length = |s: &[f64]| (1..k).map(|i| (s[i] - s[i - 1]).hypot(s[k + i] - s[k + i - 1])).sum();
-        self.samples.chunks_exact(4 * k).map(length).collect()
+        let along = |s: &[f64]| (1..k).map(|i| (s[i] - s[i - 1]).hypot(s[k + i] - s[k + i - 1])).sum();
+        let length = |(edge, samples): (&LocalEdge, &[f64])| match edge.sampled {
+            true => along(samples),
+            false => {
+                let [a, b] = edge.vertices.map(|v| self.vertices[v as usize].point);
+                (b - a).norm()
+            }
+        };
+        self.edges.iter().zip(self.samples.chunks_exact(4 * k)).map(length).collect()
     }
 
     /// Takes aspect ratios, weights and error limits from the present state: they stay
@@ -42,7 +49,10 @@ impl Problem<'_> {
             // Edges without length must not make a target of no size.
             let floor = 1e-3 * l.iter().fold(0.0, |a: f64, b| a.max(*b)) + f64::MIN_POSITIVE;
             let (l1, l2) = ((0.5 * (l[0] + l[2])).max(floor), (0.5 * (l[1] + l[3])).max(floor));
-            let area = area(element, &self.samples, self.reference.samples.len());
+            let area = match element.plain {
+                true => element.plain_area(&self.vertices),
+                false => area(element, &self.samples, self.reference.samples.len()),
+            };
             // Inverted elements have no area worth keeping.
             let area = if area > 0.2 * l1 * l2 { area } else { l1 * l2 };
             element.target = Target { ratio: tame(l2 / l1), area, evenness: EVENNESS };
@@ -59,11 +69,16 @@ impl Problem<'_> {
         let Some(tolerance) = self.tolerance else { return };
         let (x, n) = (&self.unknowns, self.reference.nodes.len());
         for edge in self.edges.iter_mut().filter(|e| e.moves) {
+            let straight = edge.straight;
             if let Shape::Boundary { chain, unknowns, offsets, nodes, limit, weight, length } =
                 &mut edge.shape
             {
                 let [start, end] = arc_lengths(x, *unknowns, *offsets);
                 *length = end - start;
+                if straight {
+                    // No error, no barrier. A curved edge has one however small its error: it would grow.
+                    continue;
+                }
                 let own = &self.nodes[*nodes as usize..*nodes as usize + n];
                 let chain = &self.boundary.chains[*chain as usize];
                 let now = tolerance.of_chain(chain, start, end);
@@ -80,9 +95,6 @@ impl Problem<'_> {
                 if now > NEGLIGIBLE * wanted {
                     let seen = squared_error(self.reference, chain, start, *length, own).value.sqrt();
                     *limit *= seen / now;
-                } else {
-                    // Straight or nearly: no barrier, and no quadrature.
-                    *weight = 0.0;
                 }
             }
         }
@@ -96,11 +108,15 @@ impl Problem<'_> {
         (self.scaled_jacobian, self.mean_scaled_jacobian) = (f64::INFINITY, 0.0);
         let share = 1.0 / self.elements.len().max(1) as f64;
         for element in &mut self.elements {
-            for side in 0..4 {
-                let at = element.edges[side] as usize * 4 * K;
-                sides.read(side, &self.samples[at..at + 4 * K], element.flips[side]);
-            }
-            let Sampled { least, most, scaled } = kernel::jacobians(&t, &sides);
+            let Sampled { least, most, scaled } = if element.plain {
+                element.plain_jacobians(&self.vertices)
+            } else {
+                for side in 0..4 {
+                    let at = element.edges[side] as usize * 4 * K;
+                    sides.read(side, &self.samples[at..at + 4 * K], element.flips[side]);
+                }
+                kernel::jacobians(&t, &sides)
+            };
             self.scaled_jacobian = self.scaled_jacobian.min(scaled);
             self.mean_scaled_jacobian += share * scaled;
             let wanted = EVENNESS * UNEVEN * most / least;

@@ -21,7 +21,13 @@ impl Problem<'_> {
             }
         }
         for (edge, out) in self.edges.iter().zip(self.samples.chunks_exact_mut(4 * k)) {
-            if !(edge.moves || fixed) {
+            if !((edge.moves || fixed) && edge.sampled) {
+                if let Shape::Boundary { unknowns, offsets, .. } = edge.shape {
+                    let [start, end] = arc_lengths(x, unknowns, offsets);
+                    if end <= start {
+                        return false;
+                    }
+                }
                 continue;
             }
             let (cx, rest) = out.split_at_mut(k);

@@ -7,6 +7,7 @@ use crate::numerics::tolerances::DECISION_GRID;
 use crate::numerics::{Vector, NONE};
 use crate::smooth::kernel::{Measure, Target};
 use crate::smooth::reference::Reference;
+use crate::smooth::straightness::Straightness;
 
 impl<'a> Problem<'a> {
     /// Quads `active` (all if `None`) of `mesh`: what has a neighbour outside stays fixed; so do
@@ -18,6 +19,7 @@ impl<'a> Problem<'a> {
         mesh: &QuadMesh,
         active: Option<&[u32]>,
         slide: bool,
+        straightness: &Straightness,
     ) -> Self {
         let all: Vec<u32>;
         let active = match active {
@@ -29,6 +31,8 @@ impl<'a> Problem<'a> {
         };
         let mut inside = vec![false; mesh.quads.len()];
         active.iter().for_each(|q| inside[*q as usize] = true);
+        // Without a tolerance to be kept, elements of order 1 have boundary edges like all others.
+        let chords = reference.order == 1 && tolerance.is_none();
         let is_inside = |q: u32| q == NONE || inside[q as usize];
         let mut vertex_of = vec![NONE; mesh.vertices.len()];
         let mut edge_of = vec![NONE; mesh.edges.len()];
@@ -59,7 +63,15 @@ impl<'a> Problem<'a> {
                     v
                 });
                 let shape = Shape::Interior { unknown: if rim { NONE } else { 0 } };
-                edges.push(LocalEdge { global: e, vertices: ends, shape, moves: false, urgency: 1.0 });
+                edges.push(LocalEdge {
+                    global: e,
+                    vertices: ends,
+                    shape,
+                    moves: false,
+                    straight: chords || straightness.holds(mesh, e),
+                    sampled: false,
+                    urgency: 1.0,
+                });
             }
         }
         let mut problem = Problem {
@@ -92,7 +104,20 @@ impl<'a> Problem<'a> {
             let starts = [quad[0], quad[1], quad[3], quad[0]];
             let flips = [0, 1, 2, 3].map(|i| mesh.edges[global[i] as usize].vertices[0] != starts[i]);
             let target = Target { ratio: 1.0, area: 1.0, evenness: EVENNESS };
-            problem.elements.push(LocalElement { edges, flips, target, thinness: 1.0, energy: 1.0 });
+            let corners = quad.map(|v| vertex_of[v as usize]);
+            let plain = edges.iter().all(|e| problem.edges[*e as usize].straight);
+            if !plain {
+                edges.iter().for_each(|e| problem.edges[*e as usize].sampled = true);
+            }
+            problem.elements.push(LocalElement {
+                edges,
+                flips,
+                corners,
+                plain,
+                target,
+                thinness: 1.0,
+                energy: 1.0,
+            });
         }
         let k4 = 4 * reference.samples.len();
         problem.samples = vec![0.0; problem.edges.len() * k4];
@@ -153,7 +178,7 @@ impl<'a> Problem<'a> {
                     length,
                 };
             } else if let Shape::Interior { unknown } = &mut edge.shape {
-                if *unknown != NONE && bubbles > 0 {
+                if *unknown != NONE && bubbles > 0 && !edge.straight {
                     edge.moves = true;
                     *unknown = self.unknowns.len() as u32;
                     for m in 0..bubbles {
