@@ -76,7 +76,7 @@ fn only_active_quads_move() {
     let active: Vec<u32> = (0..9).collect();
     let optimiser = Optimiser::new(&b, 5, None);
     let before = m.clone();
-    let outcome = optimiser.optimise(&mut m, Some(&active), Effort::Quick);
+    let outcome = optimiser.optimise(&mut m, Some(&active), Effort::Final);
     assert!(outcome.valid);
     let inside = |q: u32| q < 9;
     let mut moved = 0;

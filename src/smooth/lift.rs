@@ -1,14 +1,14 @@
 //! Improving where the mesh is poor, and nowhere else.
 
 use super::local::{grow, parts, quads_around, Saved};
-use super::optimiser::{Effort, Optimiser, MOST_WORK};
+use super::optimiser::{Effort, Optimiser};
 use crate::mesh::QuadMesh;
 
 /// Rings of quads around poor ones, in turn.
 const RINGS: [usize; 3] = [2, 3, 5];
 
 /// See [`Optimiser::lift`].
-pub(super) fn lift(optimiser: &Optimiser, mesh: &mut QuadMesh, floor: f64) -> u64 {
+pub(super) fn lift(optimiser: &Optimiser, mesh: &mut QuadMesh, floor: f64, most_work: u64) -> u64 {
     let around = quads_around(mesh);
     let all: Vec<u32> = (0..mesh.quads.len() as u32).collect();
     let mut work = 0;
@@ -16,7 +16,7 @@ pub(super) fn lift(optimiser: &Optimiser, mesh: &mut QuadMesh, floor: f64) -> u6
     for rings in RINGS {
         let mut left = Vec::new();
         for part in parts(mesh, &grow(mesh, &around, &poor, rings)) {
-            if work > MOST_WORK {
+            if work > most_work {
                 return work;
             }
             let saved = Saved::of(mesh, &part);

@@ -63,6 +63,10 @@ const WORKED_OFF: f64 = 0.9;
 const MEAN_WEIGHT: f64 = 0.2;
 /// Work after which no further way of untangling is tried, and for improving.
 pub(super) const MOST_WORK: u64 = 1_500_000;
+/// Scaled Jacobian below which elements of a whole mesh are seen to first, with their surroundings only.
+const POOR: f64 = 0.2;
+/// Work after which that ends.
+const MOST_POOR_WORK: u64 = 400_000;
 /// Sweeps of the relaxation that restarts a hopeless mesh.
 const FLATTEN_SWEEPS: usize = 200;
 
@@ -105,7 +109,7 @@ const STRAIGHT_STEPS: usize = 200;
 const LEAST_STEPS: usize = 12;
 
 impl Effort {
-    /// The schedule for so many quads.
+    /// The schedule for so many quads; plain ones count as the less that they cost.
     pub(super) fn schedule_for(self, quads: usize) -> Schedule {
         let schedule = self.schedule();
         let scaled = |steps: usize| (steps * FULL_STEPS / quads.max(FULL_STEPS)).max(LEAST_STEPS.min(steps));
@@ -304,7 +308,7 @@ impl<'a> Optimiser<'a> {
     /// itself, as often as that helps: one poor place needs steps that all others would waste. What gets worse is
     /// undone. The work spent.
     pub fn lift(&self, mesh: &mut QuadMesh, floor: f64) -> u64 {
-        lift(self, mesh, floor)
+        lift(self, mesh, floor, MOST_WORK)
     }
 
     /// `mesh` as a function of what may move.
@@ -334,9 +338,9 @@ impl<'a> Optimiser<'a> {
         aim: Option<Aim>,
         work: &mut u64,
     ) -> State {
-        let schedule = effort.schedule_for(active.map_or(mesh.quads.len(), <[u32]>::len));
         let mut lbfgs = Lbfgs::default();
         let mut problem = self.problem(reference, mesh, active, true, effort);
+        let schedule = effort.schedule_for(problem.cost(1) as usize);
         let mut valid = problem.least_jacobian() > 0.0;
         if !valid && active.is_none() {
             untangle_straight(self.boundary, &self.linear, &self.straightness, mesh, effort, work);
@@ -371,6 +375,12 @@ impl<'a> Optimiser<'a> {
             }
             problem = self.problem(reference, mesh, active, true, effort);
             valid = problem.least_jacobian() > 0.0;
+        }
+        if valid && active.is_none() && problem.scaled_jacobian < POOR {
+            // One element that is hardly valid would stop all others: its energy outweighs theirs.
+            problem.store(mesh);
+            *work += lift(self, mesh, POOR, MOST_POOR_WORK);
+            problem = self.problem(reference, mesh, active, true, effort);
         }
         if valid {
             problem.grid = schedule.grid;
