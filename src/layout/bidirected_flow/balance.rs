@@ -8,6 +8,9 @@ use std::collections::BinaryHeap;
 /// Cost of taking a unit from a general row that has none to spare.
 const ROW_PENALTY: i64 = 1_000_000_000;
 
+/// Searches from all imbalances at once go on while one settles this share, 1 in so many, of them.
+const TOGETHER_WORTH: u64 = 64;
+
 /// Cost and steps of a walk; or, if there is none, the states that were reached.
 pub(super) type Walk = Result<(i64, Vec<Step>), Vec<u32>>;
 
@@ -41,18 +44,7 @@ impl BidirectedFlow {
                 found = Some((d, s));
                 break;
             }
-            self.transitions(s, |a, step, t| {
-                let mut cost = self.marginal(a, step).max(0) + 1;
-                if step < 0 {
-                    if self.values[a] <= self.variables[a].lower || banned.contains(&(a as u32)) {
-                        return;
-                    }
-                    for &r in &self.rows_of[a] {
-                        if self.row_sums[r as usize] <= self.rows[r as usize].at_least {
-                            cost += ROW_PENALTY * (1 + self.robbed[r as usize]);
-                        }
-                    }
-                }
+            self.allowed(s, banned, |cost, (a, step), t| {
                 let i = t as usize;
                 let fresh = scratch.stamp[i] != round;
                 if fresh || d + cost < scratch.distance[i] {
@@ -64,7 +56,7 @@ impl BidirectedFlow {
                     }
                     scratch.stamp[i] = round;
                     scratch.distance[i] = d + cost;
-                    scratch.parent[i] = (s, a as u32, step);
+                    scratch.parent[i] = (s, a, step);
                     heap.push(Reverse((d + cost, t)));
                 }
             });
@@ -84,6 +76,84 @@ impl BidirectedFlow {
         };
         self.scratch = scratch;
         result
+    }
+
+    /// Calls `f(cost, step, next state)` for every way to leave `state` that is allowed.
+    fn allowed(&self, state: u32, banned: &[u32], mut f: impl FnMut(i64, Step, u32)) {
+        self.transitions(state, |a, step, t| {
+            let mut cost = self.marginal(a, step).max(0) + 1;
+            if step < 0 {
+                if self.values[a] <= self.variables[a].lower || banned.contains(&(a as u32)) {
+                    return;
+                }
+                for &r in &self.rows_of[a] {
+                    if self.row_sums[r as usize] <= self.rows[r as usize].at_least {
+                        cost += ROW_PENALTY * (1 + self.robbed[r as usize]);
+                    }
+                }
+            }
+            f(cost, (a as u32, step), t);
+        });
+    }
+
+    /// Whether a unit that left the imbalance of equation `from` is of use in state `s`.
+    fn settles(&self, from: usize, s: u32) -> bool {
+        if s == self.ground() {
+            return true;
+        }
+        let unit = if s.is_multiple_of(2) { 1 } else { -1 };
+        let other = (s / 2) as usize;
+        // The walk's own start has already lost one unit.
+        self.excess[other] * unit < 0 && (other != from || self.excess[from].abs() >= 2)
+    }
+
+    /// One search from all imbalances at once; walks are applied as they arrive. Their number. On large programs
+    /// a few of these leave little for searches from each imbalance.
+    fn balance_together(&mut self) -> usize {
+        let mut scratch = std::mem::take(&mut self.scratch);
+        scratch.round += 1;
+        let round = scratch.round;
+        // (distance, state, state that the walk started from, the state before, variable and step)
+        let mut heap = BinaryHeap::new();
+        for e in (0..self.equations).filter(|e| self.excess[*e] != 0) {
+            let start = 2 * e as u32 + (self.excess[e] < 0) as u32;
+            heap.push(Reverse((0i64, start, start, NONE, NONE, 0i32)));
+        }
+        let mut walks = 0;
+        while let Some(Reverse((d, s, from, before, a, step))) = heap.pop() {
+            let ground = s == self.ground();
+            let unit = if from.is_multiple_of(2) { 1 } else { -1 };
+            let settled = self.excess[(from / 2) as usize] * unit <= 0;
+            if settled || (scratch.stamp[s as usize] == round && !ground) {
+                continue;
+            }
+            if !ground {
+                scratch.stamp[s as usize] = round;
+                scratch.parent[s as usize] = (before, a, step);
+            }
+            if before != NONE && self.settles((from / 2) as usize, s) {
+                let mut steps = vec![(a, step)];
+                let mut t = before;
+                while scratch.parent[t as usize].0 != NONE {
+                    let (p, a, step) = scratch.parent[t as usize];
+                    steps.push((a, step));
+                    t = p;
+                }
+                let sum = Self::summed(&steps);
+                if self.too_low(&sum).is_empty() {
+                    self.apply(&sum);
+                    walks += 1;
+                }
+                continue;
+            }
+            self.allowed(s, &[], |cost, (a, step), t| {
+                if scratch.stamp[t as usize] != round || t == self.ground() {
+                    heap.push(Reverse((d + cost, t, from, s, a, step)));
+                }
+            });
+        }
+        self.scratch = scratch;
+        walks
     }
 
     /// The equations among `states` that occur with one sign only: these sum to the contradiction.
@@ -109,18 +179,16 @@ impl BidirectedFlow {
 
     /// Makes every equation hold by walks from an imbalance to an opposite one or to the ground.
     pub(super) fn balance(&mut self) -> Result<(), Obstruction> {
+        loop {
+            let left: u64 = self.excess.iter().map(|e| e.unsigned_abs() as u64).sum();
+            if (self.balance_together() as u64) * TOGETHER_WORTH < left {
+                break;
+            }
+        }
         for e in 0..self.equations {
             while self.excess[e] != 0 {
                 let start = 2 * e as u32 + (self.excess[e] < 0) as u32;
-                let goal = |flow: &Self, s: u32| {
-                    if s == flow.ground() {
-                        return true;
-                    }
-                    let unit = if s % 2 == 0 { 1 } else { -1 };
-                    let other = (s / 2) as usize;
-                    // The walk's own start has already lost one unit.
-                    flow.excess[other] * unit < 0 && (other != e || flow.excess[e].abs() >= 2)
-                };
+                let goal = |flow: &Self, s: u32| flow.settles(e, s);
                 let mut banned = Vec::new();
                 loop {
                     match self.search(start, goal, &banned) {
