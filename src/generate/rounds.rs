@@ -10,7 +10,7 @@ use crate::numerics::tolerances::{OFF_POWERS, START_GRID};
 use crate::numerics::Point;
 use crate::options::{Options, Subdivision};
 use crate::progress::Stage;
-use crate::refine::{self, Limits};
+use crate::refine::{self, Limits, SizeLimit};
 use crate::smooth::{Aim, Effort, Optimiser};
 use crate::stages::{Round, Stages};
 use std::collections::HashMap;
@@ -27,6 +27,10 @@ const LARGE: usize = 1500;
 const WORTH: f64 = 0.7;
 /// Multiple of coarsening's floor to which a mesh is smoothed before it.
 const AMPLE: f64 = 1.05;
+/// Sizes in those the caller allows above which elements are divided once more after smoothing ...
+const TOO_LARGE: f64 = 1.1;
+/// ... and after coarsening, in so many rounds.
+const LAST_DIVISIONS: usize = 3;
 /// Most elements, as a multiple of the first round's, before another layout is tried.
 const MOST_GROWTH: usize = 3;
 
@@ -51,6 +55,20 @@ pub(super) fn refine_and_smooth(
     if stages.attempts > 1 {
         mesh = watch.run(stages, Stage::Refine, |_| divide_long(mesh, boundary, sizes, options.order))?;
     }
+    let allowed = |p| sizes.allowed(p);
+    let asked = options.max_element_size.is_some() || options.element_size.is_some();
+    let limit = asked.then(|| SizeLimit::new(&allowed));
+    if let Some(limit) = &limit {
+        mesh = watch.run(stages, Stage::Refine, |_| {
+            limit.divide(mesh, boundary, 1.0, options.order, options.max_elements)
+        })?;
+        note(stages, &optimiser, &mesh, "divide");
+        if options.element_size.is_some() {
+            mesh = thinner(mesh, boundary, sizes);
+            note(stages, &optimiser, &mesh, "thin");
+        }
+    }
+    let too_large = |mesh: &QuadMesh| limit.map(|limit| limit.too_long(mesh, TOO_LARGE)).unwrap_or_default();
 
     // Step 7: boundary vertices where the tolerance wants them, edges divided where that is not enough.
     mesh = watch.run(stages, Stage::Refine, |_| refine::meet_tolerance(mesh, boundary, &error, options))?;
@@ -64,7 +82,7 @@ pub(super) fn refine_and_smooth(
         // Step 8: smooth, and untangle if need be.
         let holds = |mesh: &QuadMesh| {
             let quality = optimiser.quality(mesh);
-            quality.valid() && quality.error_ratio <= 1.0
+            quality.valid() && quality.error_ratio <= 1.0 && !too_large(mesh).contains(&true)
         };
         if round > 0 && holds(&mesh) {
             break;
@@ -81,6 +99,7 @@ pub(super) fn refine_and_smooth(
             for (e, marked) in marked.iter_mut().enumerate() {
                 *marked = optimiser.error_ratio(&mesh, e as u32) > 1.0;
             }
+            marked.iter_mut().zip(too_large(&mesh)).for_each(|(marked, large)| *marked |= large);
         } else if mesh.quads.len() <= LARGE {
             let inverted = |q: &usize| quality.elements[*q].jacobian_ratio <= 0.0;
             for e in (0..mesh.quads.len()).filter(inverted).flat_map(|q| mesh.quad_edges[q]) {
@@ -107,8 +126,7 @@ pub(super) fn refine_and_smooth(
         return Err(Error::InvalidElement { jacobian: quality.min_scaled_jacobian, at });
     }
     if coarsens && watch.work <= MOST_WORK {
-        let size = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
-        let limits = Limits { size, ..Limits::new(floor) };
+        let limits = Limits { sizes: limit, ..Limits::new(floor) };
         let progress = watch.coarsening();
         mesh = watch
             .run(stages, Stage::Refine, |_| refine::coarsen(mesh, boundary, &optimiser, limits, &progress))?;
@@ -126,10 +144,25 @@ pub(super) fn refine_and_smooth(
         if after.valid()
             && after.error_ratio <= before.error_ratio.max(1.0)
             && after.min_scaled_jacobian >= before.min_scaled_jacobian
+            && (!too_large(&smoother).contains(&true) || too_large(&mesh).contains(&true))
         {
             mesh = smoother;
             note(stages, &optimiser, &mesh, "smooth");
         }
+    }
+    for _ in 0..LAST_DIVISIONS {
+        let marked = too_large(&mesh);
+        if !marked.contains(&true) {
+            break;
+        }
+        // Halves of valid elements are valid, and halves of edges nearer to the curve.
+        let finer = refine::split_chords(&mesh, boundary, &marked, options.order)
+            .map_err(|(reason, at)| Error::Layout { reason, at: Some(at) })?;
+        if !optimiser.quality(&finer).valid() {
+            break;
+        }
+        mesh = finer;
+        note(stages, &optimiser, &mesh, "divide");
     }
     if mesh.quads.len() > options.max_elements {
         let reason =
