@@ -38,8 +38,8 @@ impl SizeSamples {
         let points: Vec<Point> = mesh.vertices.iter().map(|v| v.point).collect();
         let asked = points.iter().map(|p| ask(*p)).collect::<Result<Vec<f64>>>()?;
         let mut samples = SizeSamples { points, asked, between: Vec::new(), triangles: Vec::new() };
-        let mut queue: VecDeque<([u32; 3], Vec<(Point, f64)>)> =
-            mesh.triangles.iter().map(|t| (*t, Vec::new())).collect();
+        let mut queue: VecDeque<_> =
+            mesh.triangles.iter().map(|t| (*t, Vec::<(Point, f64)>::new())).collect();
         for place in places {
             // One outside of the domain is of no use to sampling, nor is it to be called for.
             if let Some((_, list)) = queue.iter_mut().find(|(t, _)| samples.inside(*t, *place)) {
