@@ -87,10 +87,11 @@ pub struct Options {
     /// How boundary edges are divided (step 7).
     pub subdivision: Subdivision,
     /// Largest wanted element size (the longer of the mean lengths of opposite sides), in the caller's unit;
-    /// `None`: no limit. The integer lengths aim at it, longer edges are divided, and coarsening makes no
-    /// element larger.
+    /// `None`: no limit. The finished mesh is divided, so that halving it makes a solver's error fall as the order
+    /// promises.
     pub max_element_size: Option<f64>,
-    /// The same as a function of the place; the smaller of both holds. `None`: no limit.
+    /// The same as a function of the place; the smaller of both holds. `None`: no limit. The layout's lengths aim
+    /// at it, what is larger is divided, and coarsening makes no element larger.
     pub element_size: Option<SizeFunction>,
     /// Wanted size of the base triangles, in the caller's unit; `None`: automatic.
     pub base_mesh_size: Option<f64>,

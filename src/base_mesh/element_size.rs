@@ -81,7 +81,9 @@ impl ElementSize {
             .map(|p| frame.to_canonical(Point::from(*p)))
             .collect();
         let mut samples = SizeSamples::new(mesh, &places, &mut ask)?;
-        samples.asked.iter_mut().for_each(|asked| *asked = asked.min(most));
+        // One number for all says nothing about the layout; with a function it counts where it is less.
+        let everywhere = if options.element_size.is_some() { most } else { f64::INFINITY };
+        samples.asked.iter_mut().for_each(|asked| *asked = asked.min(everywhere));
         let mut neighbors: Vec<Vec<(u32, f64)>> = vec![Vec::new(); samples.points.len()];
         for [a, b] in samples.triangles.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]) {
             let length = (samples.points[a as usize] - samples.points[b as usize]).norm();
@@ -90,13 +92,10 @@ impl ElementSize {
         }
         // Non-negative numbers order as their bits do.
         let mut size: Vec<f64> = samples.asked.iter().map(|asked| (AIM * asked).min(largest)).collect();
-        let mut queue = BinaryHeap::new();
-        queue.extend(
-            (0u32..)
-                .zip(&samples.asked)
-                .filter(|(_, asked)| asked.is_finite())
-                .map(|(v, _)| Reverse((size[v as usize].to_bits(), v))),
-        );
+        let mut queue: BinaryHeap<_> = match options.element_size {
+            Some(_) => size.iter().zip(0u32..).map(|(size, v)| Reverse((size.to_bits(), v))).collect(),
+            None => BinaryHeap::new(),
+        };
         for (v, vertex) in mesh.vertices.iter().enumerate() {
             let chains = match vertex.place {
                 Place::Interior => continue,
@@ -139,14 +138,14 @@ impl ElementSize {
                 .map(|((point, asked), (size, longest))| Sample {
                     point: *point,
                     wanted: size.min(*longest),
-                    asked: *asked,
+                    asked: asked.min(most),
                 })
                 .collect();
         arrange(&mut nodes, 0);
         let elements = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| samples.points[v as usize]);
             // Sizes are means of the corners', so that a single small one does not count for all.
-            let mean = t.iter().map(|v| samples.asked[*v as usize]).sum::<f64>() / 3.0;
+            let mean = most.min(t.iter().map(|v| samples.asked[*v as usize]).sum::<f64>() / 3.0);
             0.5 * cross(b - a, c - a) / (mean * mean)
         };
         let least_elements = samples.triangles.iter().map(elements).sum();

@@ -27,10 +27,9 @@ const LARGE: usize = 1500;
 const WORTH: f64 = 0.7;
 /// Multiple of coarsening's floor to which a mesh is smoothed before it.
 const AMPLE: f64 = 1.05;
-/// Sizes in those the caller allows above which elements are divided once more after smoothing ...
+/// Sizes in those that the caller's function allows above which elements are divided once more after smoothing,
+/// and after coarsening.
 const TOO_LARGE: f64 = 1.1;
-/// ... and after coarsening, in so many rounds.
-const LAST_DIVISIONS: usize = 3;
 /// Most elements, as a multiple of the first round's, before another layout is tried.
 const MOST_GROWTH: usize = 3;
 
@@ -56,17 +55,15 @@ pub(super) fn refine_and_smooth(
         mesh = watch.run(stages, Stage::Refine, |_| divide_long(mesh, boundary, sizes, options.order))?;
     }
     let allowed = |p| sizes.allowed(p);
-    let asked = options.max_element_size.is_some() || options.element_size.is_some();
-    let limit = asked.then(|| SizeLimit::new(&allowed));
+    // A size that varies shapes the mesh from here on; one number divides the finished mesh (below).
+    let limit = options.element_size.as_ref().map(|_| SizeLimit::new(&allowed));
     if let Some(limit) = &limit {
         mesh = watch.run(stages, Stage::Refine, |_| {
             limit.divide(mesh, boundary, 1.0, options.order, options.max_elements)
         })?;
         note(stages, &optimiser, &mesh, "divide");
-        if options.element_size.is_some() {
-            mesh = thinner(mesh, boundary, sizes);
-            note(stages, &optimiser, &mesh, "thin");
-        }
+        mesh = thinner(mesh, boundary, sizes);
+        note(stages, &optimiser, &mesh, "thin");
     }
     let too_large = |mesh: &QuadMesh| limit.map(|limit| limit.too_long(mesh, TOO_LARGE)).unwrap_or_default();
 
@@ -150,19 +147,18 @@ pub(super) fn refine_and_smooth(
             note(stages, &optimiser, &mesh, "smooth");
         }
     }
-    for _ in 0..LAST_DIVISIONS {
-        let marked = too_large(&mesh);
-        if !marked.contains(&true) {
-            break;
+    // Parts of valid elements are valid, parts of edges nearer to the curve, and a solver's error falls with their
+    // size as the order promises: nothing is smoothed any more.
+    let slack = if limit.is_some() { TOO_LARGE } else { 1.0 };
+    if options.element_size.is_some() || options.max_element_size.is_some() {
+        let whole = SizeLimit::new(&allowed);
+        let before = mesh.quads.len();
+        mesh = watch.run(stages, Stage::Refine, |_| {
+            whole.divide_evenly(mesh, boundary, slack, options.order, options.max_elements)
+        })?;
+        if mesh.quads.len() > before {
+            note(stages, &optimiser, &mesh, "divide");
         }
-        // Halves of valid elements are valid, and halves of edges nearer to the curve.
-        let finer = refine::split_chords(&mesh, boundary, &marked, options.order)
-            .map_err(|(reason, at)| Error::Layout { reason, at: Some(at) })?;
-        if !optimiser.quality(&finer).valid() {
-            break;
-        }
-        mesh = finer;
-        note(stages, &optimiser, &mesh, "divide");
     }
     if mesh.quads.len() > options.max_elements {
         let reason =

@@ -13,6 +13,7 @@
 
 mod chords;
 mod coarsen;
+mod divide;
 mod halving;
 mod live;
 mod meet;
@@ -32,6 +33,7 @@ mod trial;
 mod valence;
 
 pub use coarsen::coarsen;
+pub use divide::divide_chords;
 pub use halving::place_by_halving;
 pub use meet::meet_tolerance;
 pub use pieces::least_pieces;

@@ -1,6 +1,6 @@
 //! The largest element size that the caller allows, and the division of what is larger.
 
-use super::split_chords;
+use super::{divide_chords, split_chords};
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
 use crate::mesh::{bubble_shape, QuadMesh};
@@ -9,6 +9,8 @@ use std::fmt;
 
 /// Most rounds of halving: 2^-24 of an element.
 const ROUNDS: usize = 24;
+/// Most rounds of division into equal parts: lengths of parts differ, so the first one may leave a few too long.
+const EVEN_ROUNDS: usize = 3;
 /// Straight pieces that an edge's length is measured with.
 const PIECES: usize = 4;
 
@@ -39,21 +41,57 @@ impl<'a> SizeLimit<'a> {
         (shares.len() * shares.len()) as f64 / sum
     }
 
-    /// Marks an edge of every chord that crosses a quad whose mean length there is above `slack` times what is
-    /// allowed.
-    pub fn too_long(&self, mesh: &QuadMesh, slack: f64) -> Vec<bool> {
+    /// For each edge how many parts of it are no longer than allowed, by its quads' mean lengths.
+    fn needed(&self, mesh: &QuadMesh) -> Vec<f64> {
         let lengths: Vec<f64> = (0..mesh.edges.len()).map(|e| length(mesh, e)).collect();
-        let mut marked = vec![false; mesh.edges.len()];
+        let mut needed = vec![0.0f64; mesh.edges.len()];
         for (q, edges) in (0u32..).zip(&mesh.quad_edges) {
-            let allowed = slack * self.of_quad(mesh, q);
+            let allowed = self.of_quad(mesh, q);
             for s in [0, 1] {
                 let pair = [edges[s] as usize, edges[s + 2] as usize];
-                if 0.5 * pair.iter().map(|e| lengths[*e]).sum::<f64>() > allowed {
-                    marked[pair[0]] = true;
-                }
+                let ratio = 0.5 * pair.iter().map(|e| lengths[*e]).sum::<f64>() / allowed;
+                pair.iter().for_each(|e| needed[*e] = needed[*e].max(ratio));
             }
         }
-        marked
+        needed
+    }
+
+    /// Marks the edges of quads whose mean length there is above `slack` times what is allowed.
+    pub fn too_long(&self, mesh: &QuadMesh, slack: f64) -> Vec<bool> {
+        self.needed(mesh).iter().map(|ratio| *ratio > slack).collect()
+    }
+
+    /// Divides chords into as many equal parts as it takes for no quad to be longer than `slack` times what is
+    /// allowed. For sizes that vary little: all of a chord is divided alike. `order` as for [`split_chords`].
+    ///
+    /// # Errors
+    /// [`Error::Layout`] when the mesh is defective, or has more than `most` quads then.
+    pub fn divide_evenly(
+        &self,
+        mesh: QuadMesh,
+        boundary: &Boundary,
+        slack: f64,
+        order: usize,
+        most: usize,
+    ) -> Result<QuadMesh> {
+        let mut mesh = mesh;
+        for _ in 0..EVEN_ROUNDS {
+            let needed = self.needed(&mesh);
+            if needed.iter().all(|ratio| *ratio <= slack) {
+                break;
+            }
+            let parts: Vec<u32> = needed.iter().map(|ratio| (ratio / slack).ceil() as u32).collect();
+            let count = |edges: &[u32; 4]| {
+                [0, 1].map(|s| f64::from(parts[edges[s] as usize])).iter().product::<f64>()
+            };
+            let quads: f64 = mesh.quad_edges.iter().map(count).sum();
+            if quads > most as f64 {
+                let reason = format!("the sizes asked for take {quads:.0} elements or more, above {most}");
+                return Err(Error::Layout { reason, at: None });
+            }
+            mesh = divide_chords(&mesh, boundary, &parts, order)?;
+        }
+        Ok(mesh)
     }
 
     /// Halves what is too long, with whole chords, until nothing is or there are `most` quads. `order` as for
