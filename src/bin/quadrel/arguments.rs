@@ -38,7 +38,7 @@ pub struct MeshArguments {
     /// Norm of the boundary error
     #[arg(long, value_enum, default_value_t = NormName::L2)]
     pub norm: NormName,
-    /// Largest wanted element size
+    /// Largest wanted element size; the finished mesh is divided into equal parts
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub max_size: Option<f64>,
     /// Largest wanted element size as an expression in x and y (+ - * / ^, sin, exp, sqrt, min(a, b) and
