@@ -94,6 +94,20 @@ fn the_smaller_of_function_and_number_holds() {
 }
 
 #[test]
+fn one_size_divides_into_equal_parts() {
+    // A square is one element; whatever its parts, they are as many as fit and no more.
+    for (size, parts) in [(1.0, 1), (0.5, 2), (0.34, 3), (0.1, 10), (0.099, 11)] {
+        let fine = Options { max_element_size: Some(size), ..options(None) };
+        assert_eq!(mesh(&square(), &fine).elements.len(), parts * parts, "{size}");
+    }
+    // On a disc the parts differ.
+    let fine = Options { max_element_size: Some(0.1), ..options(None) };
+    let mesh = mesh(&disc(), &fine);
+    assert!(sizes(&mesh).iter().all(|s| s.1 <= 1.001 * 0.1));
+    assert!(mesh.elements.len() < 1000, "{}", mesh.elements.len());
+}
+
+#[test]
 fn what_is_no_size_is_an_error_with_its_place() {
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let function = SizeFunction::new(move |[x, _]| if x > 0.4 { value } else { 0.3 });

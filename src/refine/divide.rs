@@ -18,7 +18,7 @@ pub fn divide_chords(mesh: &QuadMesh, boundary: &Boundary, wanted: &[u32], order
     let mut division = Division {
         mesh,
         boundary,
-        parts: parts(mesh, wanted),
+        parts: chord_parts(mesh, wanted),
         count: order.saturating_sub(1),
         vertices: mesh.vertices.clone(),
         between: Vec::with_capacity(mesh.edges.len()),
@@ -37,7 +37,7 @@ pub fn divide_chords(mesh: &QuadMesh, boundary: &Boundary, wanted: &[u32], order
 }
 
 /// Parts of each edge: the most that any edge of its chord wants.
-fn parts(mesh: &QuadMesh, wanted: &[u32]) -> Vec<u32> {
+pub(super) fn chord_parts(mesh: &QuadMesh, wanted: &[u32]) -> Vec<u32> {
     let mut parts = vec![0; mesh.edges.len()];
     for e in 0..mesh.edges.len() as u32 {
         if parts[e as usize] == 0 {

@@ -1,16 +1,18 @@
 //! The largest element size that the caller allows, and the division of what is larger.
 
-use super::{divide_chords, split_chords};
+use super::divide::{chord_parts, divide_chords};
+use super::split_chords;
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
 use crate::mesh::{bubble_shape, QuadMesh};
+use crate::numerics::tolerances::ORDER_TIE;
 use crate::numerics::Point;
 use std::fmt;
 
 /// Most rounds of halving: 2^-24 of an element.
 const ROUNDS: usize = 24;
-/// Most rounds of division into equal parts: lengths of parts differ, so the first one may leave a few too long.
-const EVEN_ROUNDS: usize = 3;
+/// Most rounds of division into equal parts: parts differ in length, so each round counts them anew.
+const EVEN_ROUNDS: usize = 4;
 /// Straight pieces that an edge's length is measured with.
 const PIECES: usize = 4;
 
@@ -41,31 +43,33 @@ impl<'a> SizeLimit<'a> {
         (shares.len() * shares.len()) as f64 / sum
     }
 
-    /// For each edge how many parts of it are no longer than allowed, by its quads' mean lengths.
-    fn needed(&self, mesh: &QuadMesh) -> Vec<f64> {
+    /// For each quad its mean lengths along sides 0 and 1, in sizes allowed there.
+    fn ratios(&self, mesh: &QuadMesh) -> Vec<[f64; 2]> {
         let lengths: Vec<f64> = (0..mesh.edges.len()).map(|e| length(mesh, e)).collect();
-        let mut needed = vec![0.0f64; mesh.edges.len()];
-        for (q, edges) in (0u32..).zip(&mesh.quad_edges) {
+        let ratio = |(q, edges): (u32, &[u32; 4])| {
             let allowed = self.of_quad(mesh, q);
-            for s in [0, 1] {
-                let pair = [edges[s] as usize, edges[s + 2] as usize];
-                let ratio = 0.5 * pair.iter().map(|e| lengths[*e]).sum::<f64>() / allowed;
-                pair.iter().for_each(|e| needed[*e] = needed[*e].max(ratio));
-            }
-        }
-        needed
+            [0, 1].map(|s| 0.5 * (lengths[edges[s] as usize] + lengths[edges[s + 2] as usize]) / allowed)
+        };
+        (0u32..).zip(&mesh.quad_edges).map(ratio).collect()
     }
 
-    /// Marks the edges of quads whose mean length there is above `slack` times what is allowed.
+    /// Marks an edge of every chord that crosses a quad whose mean length there is above `slack` times what is
+    /// allowed.
     pub fn too_long(&self, mesh: &QuadMesh, slack: f64) -> Vec<bool> {
-        self.needed(mesh).iter().map(|ratio| *ratio > slack).collect()
+        let mut marked = vec![false; mesh.edges.len()];
+        for (edges, ratios) in mesh.quad_edges.iter().zip(self.ratios(mesh)) {
+            for s in [0, 1] {
+                marked[edges[s] as usize] |= ratios[s] > slack;
+            }
+        }
+        marked
     }
 
     /// Divides chords into as many equal parts as it takes for no quad to be longer than `slack` times what is
     /// allowed. For sizes that vary little: all of a chord is divided alike. `order` as for [`split_chords`].
     ///
     /// # Errors
-    /// [`Error::Layout`] when the mesh is defective, or has more than `most` quads then.
+    /// [`Error::Layout`] when the mesh is defective, or would have more than `most` quads.
     pub fn divide_evenly(
         &self,
         mesh: QuadMesh,
@@ -74,24 +78,40 @@ impl<'a> SizeLimit<'a> {
         order: usize,
         most: usize,
     ) -> Result<QuadMesh> {
-        let mut mesh = mesh;
+        let slack = slack * (1.0 + ORDER_TIE);
+        let mut wanted = vec![1u32; mesh.edges.len()];
+        // What was measured last: the quads of each quad of `mesh` follow each other.
+        let mut ratios = self.ratios(&mesh);
+        let mut finer = None;
         for _ in 0..EVEN_ROUNDS {
-            let needed = self.needed(&mesh);
-            if needed.iter().all(|ratio| *ratio <= slack) {
+            if ratios.iter().flatten().all(|ratio| *ratio <= slack) {
                 break;
             }
-            let parts: Vec<u32> = needed.iter().map(|ratio| (ratio / slack).ceil() as u32).collect();
-            let count = |edges: &[u32; 4]| {
-                [0, 1].map(|s| f64::from(parts[edges[s] as usize])).iter().product::<f64>()
-            };
+            let now = chord_parts(&mesh, &wanted);
+            let mut next = 0;
+            for edges in &mesh.quad_edges {
+                let parts = [0, 1].map(|s| now[edges[s] as usize]);
+                let own = &ratios[next..next + parts[0] as usize * parts[1] as usize];
+                next += own.len();
+                for s in [0, 1] {
+                    let longest = own.iter().map(|r| r[s]).fold(0.0, f64::max) / slack;
+                    let more = (f64::from(parts[s]) * longest).ceil() as u32;
+                    wanted[edges[s] as usize] = wanted[edges[s] as usize].max(more);
+                }
+            }
+            let parts = chord_parts(&mesh, &wanted);
+            let count =
+                |edges: &[u32; 4]| f64::from(parts[edges[0] as usize]) * f64::from(parts[edges[1] as usize]);
             let quads: f64 = mesh.quad_edges.iter().map(count).sum();
             if quads > most as f64 {
                 let reason = format!("the sizes asked for take {quads:.0} elements or more, above {most}");
                 return Err(Error::Layout { reason, at: None });
             }
-            mesh = divide_chords(&mesh, boundary, &parts, order)?;
+            let divided = divide_chords(&mesh, boundary, &parts, order)?;
+            ratios = self.ratios(&divided);
+            finer = Some(divided);
         }
-        Ok(mesh)
+        Ok(finer.unwrap_or(mesh))
     }
 
     /// Halves what is too long, with whole chords, until nothing is or there are `most` quads. `order` as for
