@@ -73,7 +73,7 @@ typedef int32_t quadrel_status;
 #define QUADREL_ERROR_NULL 1
 /** a value out of range, not finite or unknown, text that is not UTF-8, or a call out of order */
 #define QUADREL_ERROR_INVALID_ARGUMENT 2
-/** a curve callback returned non-zero or a value that is not finite */
+/** a curve or size callback returned non-zero or a value that is not finite (a size: not above 0) */
 #define QUADREL_ERROR_CALLBACK 3
 /** the progress callback, or the one that takes a file's bytes, asked to stop */
 #define QUADREL_ERROR_CANCELLED 4
@@ -345,7 +345,7 @@ quadrel_status quadrel_options_set_field(quadrel_options *options, quadrel_field
 /** How boundary edges are divided, a QUADREL_SUBDIVISION number; default QUADREL_SUBDIVISION_EQUAL_ERROR. */
 quadrel_status quadrel_options_set_subdivision(quadrel_options *options, quadrel_subdivision subdivision);
 
-/** Largest wanted size of the elements; default 0: no limit. */
+/** Largest wanted size of the elements: the longer of the mean lengths of opposite sides; default 0: no limit. */
 quadrel_status quadrel_options_set_max_element_size(quadrel_options *options, double size);
 
 /** Wanted size of the base mesh's triangles; default 0: automatic. */
@@ -382,6 +382,25 @@ quadrel_status quadrel_options_set_base_triangulation(quadrel_options *options,
                                                       const int32_t *boundary,
                                                       const double *parameters,
                                                       size_t boundary_count);
+
+/*
+ * ---- Element size ----
+ */
+
+/**
+ * Writes the largest wanted element size at the point xy to size: a finite length above 0. Returns 0, or
+ * non-zero to give up: quadrel_generate then returns QUADREL_ERROR_CALLBACK, as it does for other values.
+ */
+typedef int (*quadrel_size_fn)(void *user, const double *xy, double *size);
+
+/**
+ * Element size as a function of the place; where quadrel_options_set_max_element_size or the domain ask for
+ * less, that holds. NULL: no limit (then too user is destroyed). It is called for points of the domain only.
+ */
+quadrel_status quadrel_options_set_size_function(quadrel_options *options,
+                                                 quadrel_size_fn size,
+                                                 void *user,
+                                                 quadrel_destroy_fn destroy);
 
 /*
  * ---- Progress ----

@@ -33,6 +33,8 @@ using Point = std::array<double, 2>;
 using Curve = std::function<Point(double)>;
 // Stage and share of the run done; false stops the run.
 using Progress = std::function<bool(quadrel_stage, double)>;
+// The largest wanted element size at a point.
+using Size = std::function<double(Point)>;
 // Takes bytes of a file; false stops.
 using Sink = std::function<bool(const void*, std::size_t)>;
 
@@ -122,6 +124,13 @@ inline int derivative_of(void* user, double t, double* xy) {
 
 inline int progress(void* user, quadrel_stage stage, double fraction) {
   return shield([&] { return (*static_cast<Progress*>(user))(stage, fraction); });
+}
+
+inline int size(void* user, const double* xy, double* size) {
+  return shield([&] {
+    *size = (*static_cast<Size*>(user))(Point{xy[0], xy[1]});
+    return true;
+  });
 }
 
 inline int sink(void* user, const void* bytes, std::size_t count) {
@@ -240,6 +249,10 @@ class Options {
     return done(quadrel_options_set_subdivision(get(), static_cast<quadrel_subdivision>(s)));
   }
   Options& max_element_size(double h) { return done(quadrel_options_set_max_element_size(get(), h)); }
+  Options& size(Size at) {
+    auto* user = new Size(std::move(at));
+    return done(quadrel_options_set_size_function(get(), detail::size, user, detail::destroy<Size>));
+  }
   Options& base_mesh_size(double h) { return done(quadrel_options_set_base_mesh_size(get(), h)); }
   // Points [n], counter-clockwise triangles [n][3], border vertices [n][3] (vertex, loop, segment) and the
   // parameter t of each there; all empty: quadrel makes its own base mesh.

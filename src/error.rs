@@ -11,6 +11,8 @@ pub enum Error {
     InvalidArgument { what: &'static str, value: String, allowed: &'static str },
     /// A curve callback reported failure, or gave a value that is not finite.
     Callback { loop_index: usize, segment: usize, t: f64, reason: String },
+    /// The function for the element size gave up, or a value that is not finite and above 0.
+    SizeFunction { reason: String, at: Point },
     /// The progress callback asked to stop.
     Cancelled,
     /// Consecutive segments do not join.
@@ -67,7 +69,8 @@ impl Error {
     pub fn name(&self) -> &'static str {
         match self {
             Error::InvalidArgument { .. } => "invalid_argument",
-            Error::Callback { .. } => "callback",
+            // One name, one status of the C interface.
+            Error::Callback { .. } | Error::SizeFunction { .. } => "callback",
             Error::Cancelled => "cancelled",
             Error::OpenLoop { .. } => "open_loop",
             Error::Intersection { .. } => "intersection",
@@ -90,7 +93,8 @@ impl Error {
     /// Where in the domain (in the caller's coordinates), if the cause has a place.
     pub fn place(&self) -> Option<Point> {
         match self {
-            Error::OpenLoop { at, .. }
+            Error::SizeFunction { at, .. }
+            | Error::OpenLoop { at, .. }
             | Error::Intersection { at, .. }
             | Error::Cusp { at, .. }
             | Error::Degenerate { at, .. }
@@ -133,6 +137,12 @@ impl fmt::Display for Error {
                 f,
                 "the curve of loop {loop_index}, segment {segment} failed at t = {t}: {reason}; \
                  it must give finite coordinates for every t in [0, 1]"
+            ),
+            Error::SizeFunction { reason, at } => write!(
+                f,
+                "the function for the element size failed at ({:.9}, {:.9}): {reason}; it must give a finite \
+                 length above 0 everywhere in the domain",
+                at.x, at.y
             ),
             Error::Cancelled => write!(f, "cancelled by the progress callback"),
             Error::OpenLoop { loop_index, segment, gap, at } => write!(

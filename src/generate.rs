@@ -78,7 +78,9 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
         });
         match result {
             Ok(mesh) => return Ok(mesh),
-            Err(error @ (Error::Cancelled | Error::Callback { .. })) => return Err(error),
+            Err(error @ (Error::Cancelled | Error::Callback { .. } | Error::SizeFunction { .. })) => {
+                return Err(error)
+            }
             Err(error) => {
                 failure.get_or_insert(error);
             }

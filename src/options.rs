@@ -1,5 +1,9 @@
 //! What the caller may choose; the defaults need no tuning.
 
+mod size_function;
+
+pub use size_function::{SizeFn, SizeFunction};
+
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 use std::sync::Arc;
@@ -82,9 +86,13 @@ pub struct Options {
     pub field: FieldMethod,
     /// How boundary edges are divided (step 7).
     pub subdivision: Subdivision,
-    /// Largest wanted element size, in the caller's unit; `None`: no limit. The integer
-    /// lengths aim at it, and coarsening makes no element larger than it or than the largest they left.
+    /// Largest wanted element size (the longer of the mean lengths of opposite sides), in the caller's unit;
+    /// `None`: no limit. The finished mesh is divided, so that halving it makes a solver's error fall as the order
+    /// promises.
     pub max_element_size: Option<f64>,
+    /// The same as a function of the place; the smaller of both holds. `None`: no limit. The layout's lengths aim
+    /// at it, what is larger is divided, and coarsening makes no element larger.
+    pub element_size: Option<SizeFunction>,
     /// Wanted size of the base triangles, in the caller's unit; `None`: automatic.
     pub base_mesh_size: Option<f64>,
     /// The caller's own base mesh; `None`: one is made.
@@ -108,6 +116,7 @@ impl Default for Options {
             field: FieldMethod::Diffused,
             subdivision: Subdivision::EqualError,
             max_element_size: None,
+            element_size: None,
             base_mesh_size: None,
             base_triangulation: None,
             quality_floor: 0.8,

@@ -5,12 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The sections in the header's order: a type is declared before it is used.
-const SECTIONS: [&str; 11] = [
+const SECTIONS: [&str; 12] = [
     "status",
     "domain",
     "domain_file",
     "options",
     "base_triangulation",
+    "size",
     "progress",
     "generate",
     "mesh",

@@ -39,6 +39,7 @@ static void options_out_of_range(void) {
     OK(quadrel_options_set_max_element_size(o, 0));
     OK(quadrel_options_set_base_mesh_size(o, 0));
     OK(quadrel_options_set_progress(o, NULL, NULL, NULL));
+    OK(quadrel_options_set_size_function(o, NULL, NULL, NULL));
     quadrel_options_free(o);
 
     CHECK_STATUS(quadrel_options_set_order(NULL, 1), QUADREL_ERROR_NULL);
@@ -51,6 +52,15 @@ static void options_out_of_range(void) {
     CHECK_STATUS(quadrel_options_set_quality_floor(NULL, 0.5), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_options_set_max_elements(NULL, 1), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_options_set_progress(NULL, NULL, NULL, NULL), QUADREL_ERROR_NULL);
+    CHECK_STATUS(quadrel_options_set_size_function(NULL, NULL, NULL, NULL), QUADREL_ERROR_NULL);
+}
+
+/* Small elements at the left; fails outside of the plate. */
+static int size_at(void *user, const double *xy, double *size) {
+    if (user) return 8;
+    if (xy[0] < -2.01 || xy[0] > 2.01 || xy[1] < -2.01 || xy[1] > 2.01) return 7;
+    *size = xy[0] < 0 ? 0.4 : 2;
+    return 0;
 }
 
 /* Elements of the plate under options; 0 on failure. */
@@ -72,6 +82,17 @@ static void options_do_something(void) {
     CHECK(usual > 0 && elements(o) == usual);
     OK(quadrel_options_set_max_element_size(o, 0.5));
     CHECK(elements(o) > usual);
+    quadrel_options_free(o);
+
+    o = quadrel_options_new();
+    OK(quadrel_options_set_size_function(o, size_at, NULL, NULL));
+    {
+        /* Half of the plate is 16 / 2 - pi / 2 = 6.4 large: 40 elements of 0.4 squared. */
+        const size_t graded = elements(o);
+        CHECK(graded > 40 && graded > usual);
+        OK(quadrel_options_set_size_function(o, NULL, NULL, NULL));
+        CHECK(elements(o) == usual);
+    }
     quadrel_options_free(o);
 
     for (norm = QUADREL_NORM_L2; norm <= QUADREL_NORM_MAX; ++norm) {

@@ -159,6 +159,17 @@ void exceptions_pass_through() {
 
   caught = false;
   try {
+    quadrel::generate(disc, quadrel::Options().size([](Point xy) -> double {
+      if (xy[0] > 0) throw Mine("off the map");
+      return 0.5;
+    }));
+  } catch (const Mine& e) {
+    caught = std::string(e.what()) == "off the map";
+  }
+  CHECK(caught);
+
+  caught = false;
+  try {
     quadrel::generate(disc).write(quadrel::Format::Vtu, [](const void*, std::size_t) -> bool { throw Mine("disk full"); });
   } catch (const Mine&) {
     caught = true;
@@ -228,6 +239,60 @@ void options_destroy_their_user_once() {
   quadrel_domain_free(plate);
 }
 
+// A size function: on this thread, destroyed once on every way; failing and values that are no length.
+struct Size {
+  int calls = 0, destroyed = 0, fail_at = -1;
+  double value = 0.5;
+  bool elsewhere = false;
+  std::thread::id home = std::this_thread::get_id();
+};
+
+int size_at(void* user, const double* xy, double* size) {
+  auto& own = *static_cast<Size*>(user);
+  if (std::this_thread::get_id() != own.home || own.destroyed > 0 || std::hypot(xy[0], xy[1]) > 3) own.elsewhere = true;
+  *size = own.value;
+  return own.calls++ == own.fail_at ? 42 : 0;
+}
+
+void size_destroy(void* user) { ++static_cast<Size*>(user)->destroyed; }
+
+void sizes_are_asked_for() {
+  quadrel_domain* plate = new_plate();
+  for (int fail_at : {-1, 0, 20}) {
+    Size size;
+    size.fail_at = fail_at;
+    quadrel_options* options = quadrel_options_new();
+    OK(quadrel_options_set_size_function(options, size_at, &size, size_destroy));
+    quadrel_mesh* mesh = nullptr;
+    const quadrel_status status = quadrel_generate(plate, options, nullptr, &mesh);
+    CHECK(status == (fail_at < 0 ? QUADREL_OK : QUADREL_ERROR_CALLBACK) && (mesh != nullptr) == (status == QUADREL_OK));
+    if (status != QUADREL_OK) {
+      double place[2];
+      CHECK(std::string(quadrel_last_error_message()).find("42") != std::string::npos);
+      CHECK(quadrel_last_error_location(place) == 1 && std::hypot(place[0], place[1]) < 3);
+    }
+    CHECK(size.calls > 0 && size.destroyed == 0 && !size.elsewhere);
+    quadrel_options_free(options);
+    CHECK(size.destroyed == 1);
+    quadrel_mesh_free(mesh);
+  }
+  for (double value : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    Size size;
+    size.value = value;
+    quadrel_options* options = quadrel_options_new();
+    OK(quadrel_options_set_size_function(options, size_at, &size, size_destroy));
+    quadrel_mesh* mesh = nullptr;
+    CHECK_STATUS(quadrel_generate(plate, options, nullptr, &mesh), QUADREL_ERROR_CALLBACK);
+    OK(quadrel_options_set_size_function(options, nullptr, nullptr, nullptr));
+    CHECK(size.destroyed == 1 && mesh == nullptr);
+    quadrel_options_free(options);
+  }
+  Size size;
+  CHECK_STATUS(quadrel_options_set_size_function(nullptr, size_at, &size, size_destroy), QUADREL_ERROR_NULL);
+  CHECK(size.destroyed == 1);
+  quadrel_domain_free(plate);
+}
+
 // A callback may use quadrel for other objects; the outer error stays the one reported.
 void nested_calls() {
   quadrel::Domain disc;
@@ -250,6 +315,7 @@ int main() {
   exceptions_pass_through();
   progress_and_cancelling();
   options_destroy_their_user_once();
+  sizes_are_asked_for();
   nested_calls();
   return failures != 0;
 }

@@ -18,6 +18,7 @@ mod given;
 mod locate;
 mod sampling;
 mod size_field;
+mod size_samples;
 mod tips;
 
 pub use tips::{doubtful_corners, doubtful_reach};

@@ -173,7 +173,7 @@ fn length(value: f64) -> Option<f64> {
     (value != 0.0).then_some(value)
 }
 
-/// Largest wanted size of the elements; default 0: no limit.
+/// Largest wanted size of the elements: the longer of the mean lengths of opposite sides; default 0: no limit.
 #[no_mangle]
 pub unsafe extern "C" fn quadrel_options_set_max_element_size(
     options: *mut quadrel_options,

@@ -12,7 +12,7 @@ pub const QUADREL_OK: quadrel_status = 0;
 pub const QUADREL_ERROR_NULL: quadrel_status = 1;
 /// a value out of range, not finite or unknown, text that is not UTF-8, or a call out of order
 pub const QUADREL_ERROR_INVALID_ARGUMENT: quadrel_status = 2;
-/// a curve callback returned non-zero or a value that is not finite
+/// a curve or size callback returned non-zero or a value that is not finite (a size: not above 0)
 pub const QUADREL_ERROR_CALLBACK: quadrel_status = 3;
 /// the progress callback, or the one that takes a file's bytes, asked to stop
 pub const QUADREL_ERROR_CANCELLED: quadrel_status = 4;
@@ -75,7 +75,7 @@ const NAMES: [(quadrel_status, &str); 20] = [
 pub fn status_of(error: &Error) -> quadrel_status {
     match error {
         Error::InvalidArgument { .. } => QUADREL_ERROR_INVALID_ARGUMENT,
-        Error::Callback { .. } => QUADREL_ERROR_CALLBACK,
+        Error::Callback { .. } | Error::SizeFunction { .. } => QUADREL_ERROR_CALLBACK,
         Error::Cancelled => QUADREL_ERROR_CANCELLED,
         Error::OpenLoop { .. } => QUADREL_ERROR_OPEN_LOOP,
         Error::Intersection { .. } => QUADREL_ERROR_INTERSECTION,

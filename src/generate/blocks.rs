@@ -21,6 +21,9 @@ const GATE_ROUNDS: usize = 6;
 const SEED_ROUNDS: usize = 6;
 /// Edges a chain gets for each one that the tolerance needs: room for vertices that slide.
 const CHAIN_MARGIN: f64 = 1.2;
+/// Least size, relative to the domain's diagonal, that the lengths in whole numbers aim at: a caller's spot of
+/// almost nothing, met by a sample, must not count for a whole arc. Division does the rest.
+const LEAST_SIZE: f64 = 5e-5;
 /// Base size of the next attempt relative to the last.
 const FINER: f64 = 0.72;
 
@@ -114,8 +117,12 @@ pub(super) fn layout(
     let regions = regions
         .ok_or_else(|| Error::Layout { reason: "a region between two sharp corners".into(), at: None })?;
     stages.block_layout = Some(regions.clone());
-    let most = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
-    let sizes = ElementSize::new(mesh, boundary, most);
+    let sizes = ElementSize::new(mesh, boundary, options)?;
+    if sizes.least_elements > options.max_elements as f64 {
+        let wanted = sizes.least_elements;
+        let reason = format!("the sizes asked for take {wanted:.0} elements, above {}", options.max_elements);
+        return Err(Error::Layout { reason, at: None });
+    }
     let conforming = watch.run(stages, Stage::Layout, |_| {
         let error = BoundaryError::new(*tolerance);
         let mut minimum = Vec::with_capacity(boundary.chains.len());
@@ -123,7 +130,7 @@ pub(super) fn layout(
             let least = least_pieces(chain, &error)?;
             minimum.push(if least > 1 { (least as f64 * CHAIN_MARGIN).ceil() as u32 } else { 1 });
         }
-        let size = |p| sizes.at(p);
+        let size = |p| sizes.at(p).max(LEAST_SIZE);
         layout::conform(&regions, boundary, &Targets::new(&size, &minimum))
     })?;
     stages.block_layout = Some(conforming.repaired);

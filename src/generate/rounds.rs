@@ -10,7 +10,7 @@ use crate::numerics::tolerances::{OFF_POWERS, START_GRID};
 use crate::numerics::Point;
 use crate::options::{Options, Subdivision};
 use crate::progress::Stage;
-use crate::refine::{self, Limits};
+use crate::refine::{self, Limits, SizeLimit};
 use crate::smooth::{Aim, Effort, Optimiser};
 use crate::stages::{Round, Stages};
 use std::collections::HashMap;
@@ -27,6 +27,9 @@ const LARGE: usize = 1500;
 const WORTH: f64 = 0.7;
 /// Multiple of coarsening's floor to which a mesh is smoothed before it.
 const AMPLE: f64 = 1.05;
+/// Sizes in those that the caller's function allows above which elements are divided once more after smoothing,
+/// and after coarsening.
+const TOO_LARGE: f64 = 1.1;
 /// Most elements, as a multiple of the first round's, before another layout is tried.
 const MOST_GROWTH: usize = 3;
 
@@ -51,6 +54,18 @@ pub(super) fn refine_and_smooth(
     if stages.attempts > 1 {
         mesh = watch.run(stages, Stage::Refine, |_| divide_long(mesh, boundary, sizes, options.order))?;
     }
+    let allowed = |p| sizes.allowed(p);
+    // A size that varies shapes the mesh from here on; one number divides the finished mesh (below).
+    let limit = options.element_size.as_ref().map(|_| SizeLimit::new(&allowed));
+    if let Some(limit) = &limit {
+        mesh = watch.run(stages, Stage::Refine, |_| {
+            limit.divide(mesh, boundary, 1.0, options.order, options.max_elements)
+        })?;
+        note(stages, &optimiser, &mesh, "divide");
+        mesh = thinner(mesh, boundary, sizes);
+        note(stages, &optimiser, &mesh, "thin");
+    }
+    let too_large = |mesh: &QuadMesh| limit.map(|limit| limit.too_long(mesh, TOO_LARGE)).unwrap_or_default();
 
     // Step 7: boundary vertices where the tolerance wants them, edges divided where that is not enough.
     mesh = watch.run(stages, Stage::Refine, |_| refine::meet_tolerance(mesh, boundary, &error, options))?;
@@ -64,7 +79,7 @@ pub(super) fn refine_and_smooth(
         // Step 8: smooth, and untangle if need be.
         let holds = |mesh: &QuadMesh| {
             let quality = optimiser.quality(mesh);
-            quality.valid() && quality.error_ratio <= 1.0
+            quality.valid() && quality.error_ratio <= 1.0 && !too_large(mesh).contains(&true)
         };
         if round > 0 && holds(&mesh) {
             break;
@@ -81,6 +96,7 @@ pub(super) fn refine_and_smooth(
             for (e, marked) in marked.iter_mut().enumerate() {
                 *marked = optimiser.error_ratio(&mesh, e as u32) > 1.0;
             }
+            marked.iter_mut().zip(too_large(&mesh)).for_each(|(marked, large)| *marked |= large);
         } else if mesh.quads.len() <= LARGE {
             let inverted = |q: &usize| quality.elements[*q].jacobian_ratio <= 0.0;
             for e in (0..mesh.quads.len()).filter(inverted).flat_map(|q| mesh.quad_edges[q]) {
@@ -107,8 +123,7 @@ pub(super) fn refine_and_smooth(
         return Err(Error::InvalidElement { jacobian: quality.min_scaled_jacobian, at });
     }
     if coarsens && watch.work <= MOST_WORK {
-        let size = options.max_element_size.map_or(f64::INFINITY, |h| h / boundary.frame.scale);
-        let limits = Limits { size, ..Limits::new(floor) };
+        let limits = Limits { sizes: limit, ..Limits::new(floor) };
         let progress = watch.coarsening();
         mesh = watch
             .run(stages, Stage::Refine, |_| refine::coarsen(mesh, boundary, &optimiser, limits, &progress))?;
@@ -126,9 +141,23 @@ pub(super) fn refine_and_smooth(
         if after.valid()
             && after.error_ratio <= before.error_ratio.max(1.0)
             && after.min_scaled_jacobian >= before.min_scaled_jacobian
+            && (!too_large(&smoother).contains(&true) || too_large(&mesh).contains(&true))
         {
             mesh = smoother;
             note(stages, &optimiser, &mesh, "smooth");
+        }
+    }
+    // Parts of valid elements are valid, parts of edges nearer to the curve, and a solver's error falls with their
+    // size as the order promises: nothing is smoothed any more.
+    let slack = if limit.is_some() { TOO_LARGE } else { 1.0 };
+    if options.element_size.is_some() || options.max_element_size.is_some() {
+        let whole = SizeLimit::new(&allowed);
+        let before = mesh.quads.len();
+        mesh = watch.run(stages, Stage::Refine, |_| {
+            whole.divide_evenly(mesh, boundary, slack, options.order, options.max_elements)
+        })?;
+        if mesh.quads.len() > before {
+            note(stages, &optimiser, &mesh, "divide");
         }
     }
     if mesh.quads.len() > options.max_elements {

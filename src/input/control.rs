@@ -1,14 +1,15 @@
 //! HOHQMesh control files (two-dimensional models).
 //!
-//! Taken: the model's curves, the polynomial order, the outer boundary's `tolerance`; without an outer
-//! boundary the box of BACKGROUND_GRID. Everything about HOHQMesh's own grids is skipped.
+//! Taken: the model's curves, the polynomial order, the outer boundary's `tolerance`, the refinement regions and
+//! the size of the background grid; without an outer boundary the box of BACKGROUND_GRID. Everything else about
+//! HOHQMesh's own grids is skipped.
 
 use crate::domain::{CubicSpline, Curve, Domain, DomainBuilder, EllipticArc, Line, LoopKind};
 use crate::error::{Error, Result};
 use crate::input::blocks::{self, Block, Located};
 use crate::input::equation::EquationCurve;
 use crate::input::expression::Expression;
-use crate::input::Model;
+use crate::input::{refinement, Model};
 use crate::numerics::Point;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -71,11 +72,20 @@ pub(crate) fn read(name: &str, text: &str, base: Option<&Path>) -> Result<Model>
     }
     let domain = builder.build()?;
     let warnings = domain.warnings.clone();
-    Ok(Model { name: name.to_string(), domain, order, tolerance, warnings })
+    let size = refinement::size_function(control)?;
+    let background_size = control.child("BACKGROUND_GRID").map(background_size).transpose()?.flatten();
+    Ok(Model { name: name.to_string(), domain, order, tolerance, size, background_size, warnings })
 }
 
 fn end_loop(builder: &mut DomainBuilder, block: &Block) -> Result<()> {
     builder.end_loop().map(|_| ()).map_err(|_| block.error(format!("{} has no curves", block.name)))
+}
+
+/// The size of the background grid's cells, the larger of both directions.
+fn background_size(grid: &Block) -> Result<Option<f64>> {
+    let Some(value) = grid.get("background grid size").or(grid.get("dx")) else { return Ok(None) };
+    let [dx, dy] = pair(value)?;
+    Ok(Some(dx.max(dy)).filter(|size| *size > 0.0))
 }
 
 /// The box that HOHQMesh takes where there is no outer boundary.
@@ -224,7 +234,7 @@ fn parse_number(text: &str) -> Option<f64> {
         .filter(|x: &f64| x.is_finite())
 }
 
-fn number(v: &Located) -> Result<f64> {
+pub(super) fn number(v: &Located) -> Result<f64> {
     let text = v.text.split('%').next().unwrap_or("").trim();
     parse_number(text).ok_or_else(|| v.error(format!("'{text}' is not a number")))
 }
@@ -260,7 +270,7 @@ fn pair(v: &Located) -> Result<[f64; 2]> {
     bracketed(v).map(|list| [list[0], list[1]])
 }
 
-fn point(v: &Located) -> Result<Point> {
+pub(super) fn point(v: &Located) -> Result<Point> {
     let list = bracketed(v)?;
     if list.get(2).is_some_and(|&z| z != 0.0) {
         return out_of_plane(v);

@@ -1,5 +1,5 @@
-//! Expressions of one variable, as HOHQMesh's control files have them: a Pratt parser and evaluation
-//! together with the derivative (forward mode).
+//! Expressions of one or more variables, as HOHQMesh's control files have them: a Pratt parser and evaluation
+//! together with the derivative by the first variable (forward mode).
 //!
 //! Operators + − * / ^ ** with the usual precedence; power binds tighter than the sign, so −t^2 is
 //! −(t²), and associates to the right. Case does not matter; exponents may be Fortran's (1.0d0).
@@ -16,13 +16,15 @@ pub struct Expression {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Op {
     Number(f64),
-    Variable,
+    Variable(u8),
     Negate,
     Add,
     Subtract,
     Multiply,
     Divide,
     Power,
+    Min,
+    Max,
     Call(Function),
 }
 
@@ -109,8 +111,13 @@ impl Expression {
     /// Parses `text`, an expression of the variable `variable`. `line` and `column` (from 1) tell where
     /// in its file it begins: errors are located in the file.
     pub fn parse(text: &str, variable: &str, line: usize, column: usize) -> Result<Self> {
-        let variable = variable.to_lowercase();
-        let mut parser = Parser::new(text, &variable, line, column);
+        Self::parse_of(text, &[variable], line, column)
+    }
+
+    /// The same for an expression of several variables (up to 256).
+    pub fn parse_of(text: &str, variables: &[&str], line: usize, column: usize) -> Result<Self> {
+        let variables: Vec<String> = variables.iter().map(|v| v.to_lowercase()).collect();
+        let mut parser = Parser::new(text, &variables, line, column);
         parser.sum(0)?;
         parser.skip_blanks();
         if parser.at < parser.text.len() {
@@ -140,11 +147,24 @@ impl Expression {
 
     /// Value and derivative at `t`. Where the expression is undefined both may be NaN or infinite.
     pub fn evaluate(&self, t: f64) -> (f64, f64) {
+        self.run(&[t])
+    }
+
+    /// Value for these variables, in the order they were named. NaN or infinite where it is undefined.
+    pub fn value(&self, variables: &[f64]) -> f64 {
+        self.run(variables).0
+    }
+
+    /// Value, and derivative by the first variable.
+    fn run(&self, variables: &[f64]) -> (f64, f64) {
         let mut stack: Vec<(f64, f64)> = Vec::with_capacity(16);
         for op in &self.program {
             let value = match *op {
                 Op::Number(x) => (x, 0.0),
-                Op::Variable => (t, 1.0),
+                Op::Variable(k) => {
+                    let value = variables.get(k as usize).copied().unwrap_or(f64::NAN);
+                    (value, if k == 0 { 1.0 } else { 0.0 })
+                }
                 Op::Negate => {
                     let (a, da) = stack.pop().unwrap_or_default();
                     (-a, -da)
@@ -162,6 +182,10 @@ impl Expression {
                         Op::Subtract => (a - b, da - db),
                         Op::Multiply => (a * b, da * b + a * db),
                         Op::Divide => (a / b, (da - a / b * db) / b),
+                        // A NaN stays one.
+                        Op::Min if a < b || a.is_nan() => (a, da),
+                        Op::Max if a > b || a.is_nan() => (a, da),
+                        Op::Min | Op::Max => (b, db),
                         _ => power((a, da), (b, db)),
                     }
                 }
@@ -180,7 +204,7 @@ fn is_name(s: &str) -> bool {
 struct Parser<'a> {
     text: Vec<char>,
     at: usize,
-    variable: &'a str,
+    variables: &'a [String],
     program: Vec<Op>,
     depth: usize,
     line: usize,
@@ -194,9 +218,9 @@ const MAX_DEPTH: usize = 200;
 const SIGN: u8 = 3;
 
 impl<'a> Parser<'a> {
-    fn new(text: &str, variable: &'a str, line: usize, column: usize) -> Self {
+    fn new(text: &str, variables: &'a [String], line: usize, column: usize) -> Self {
         let text = text.chars().map(|c| c.to_ascii_lowercase()).collect();
-        Parser { text, at: 0, variable, program: Vec::new(), depth: 0, line, column }
+        Parser { text, at: 0, variables, program: Vec::new(), depth: 0, line, column }
     }
 
     fn error(&self, what: impl Into<String>) -> Error {
@@ -322,17 +346,22 @@ impl<'a> Parser<'a> {
             self.at += 1;
         }
         let name: String = self.text[start..self.at].iter().collect();
-        if name == self.variable {
-            self.program.push(Op::Variable);
+        if let Some(k) = self.variables.iter().position(|v| *v == name) {
+            self.program.push(Op::Variable(k as u8));
             return Ok(());
         }
         if name == "pi" {
             self.program.push(Op::Number(std::f64::consts::PI));
             return Ok(());
         }
-        let Some(function) = Function::named(&name) else {
-            self.at = start;
-            return Err(self.error(format!("unknown name '{name}'")));
+        let (op, two) = match (name.as_str(), Function::named(&name)) {
+            ("min", _) => (Op::Min, true),
+            ("max", _) => (Op::Max, true),
+            (_, Some(function)) => (Op::Call(function), false),
+            _ => {
+                self.at = start;
+                return Err(self.error(format!("unknown name '{name}'")));
+            }
         };
         self.skip_blanks();
         if self.peek() != Some('(') {
@@ -340,8 +369,15 @@ impl<'a> Parser<'a> {
         }
         self.at += 1;
         self.sum(0)?;
+        if two {
+            if self.peek() != Some(',') {
+                return Err(self.error(format!("',' is missing: '{name}' takes two values")));
+            }
+            self.at += 1;
+            self.sum(0)?;
+        }
         self.close()?;
-        self.program.push(Op::Call(function));
+        self.program.push(op);
         Ok(())
     }
 }

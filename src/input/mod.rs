@@ -7,6 +7,7 @@ mod control;
 mod embedded;
 mod equation;
 mod expression;
+mod refinement;
 mod svg;
 mod svg_arc;
 
@@ -16,6 +17,7 @@ pub use expression::Expression;
 
 use crate::domain::Domain;
 use crate::error::{Error, Result};
+use crate::options::SizeFunction;
 use std::path::Path;
 
 /// What a file describes.
@@ -28,6 +30,10 @@ pub struct Model {
     pub order: Option<usize>,
     /// The boundary tolerance the file asks for, as the file has it.
     pub tolerance: Option<f64>,
+    /// The element size that the file's refinement regions ask for. It holds if it is made an option.
+    pub size: Option<SizeFunction>,
+    /// The size of the file's background grid, the larger of the two directions.
+    pub background_size: Option<f64>,
     /// What was repaired or left out.
     pub warnings: Vec<String>,
 }

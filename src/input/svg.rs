@@ -64,7 +64,15 @@ pub(crate) fn read(name: &str, text: &str, component: Option<usize>) -> Result<M
     }
     let domain = builder.build()?;
     let warnings = domain.warnings.clone();
-    Ok(Model { name: name.to_string(), domain, order: None, tolerance: None, warnings })
+    Ok(Model {
+        name: name.to_string(),
+        domain,
+        order: None,
+        tolerance: None,
+        size: None,
+        background_size: None,
+        warnings,
+    })
 }
 
 /// Where and why path data cannot be read.

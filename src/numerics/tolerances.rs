@@ -19,6 +19,10 @@ pub const PORT_TURN: f64 = 0.05;
 /// curves' own rounding (1e-16) is still a millionth of it.
 pub const SHORTEST_EDGE: f64 = 1e-10;
 
+/// Boundary tolerance, in the canonical frame, below which none is looked for: edges would be measured against the
+/// rounding of their own coordinates, about 1e-16.
+pub const LEAST_TOLERANCE: f64 = 1e-15;
+
 /// Largest share of a closed chain that one edge may cover: a loop has at least three edges.
 pub const LONGEST_LOOP_SHARE: f64 = 1.0 / 3.0;
 

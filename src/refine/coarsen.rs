@@ -40,7 +40,7 @@ const MOST_WORK_AT_ALL: u64 = 3_500_000;
 struct Coarsening<'a> {
     boundary: &'a Boundary,
     optimiser: &'a Optimiser<'a>,
-    limits: Limits,
+    limits: Limits<'a>,
     /// Whether all elements keep the limits from the start.
     holds: bool,
     /// Least number of edges of each chain.
@@ -134,7 +134,8 @@ pub fn coarsen(
     let largest = quality.elements.iter().map(|e| e.size).fold(0.0, f64::max);
     let holds = quality.min_scaled_jacobian >= limits.scaled_jacobian
         && quality.min_jacobian_ratio >= limits.jacobian_ratio
-        && largest <= limits.size;
+        && largest <= limits.size
+        && (0u32..).zip(&quality.elements).all(|(q, e)| limits.excess_of(&mesh, q, e.size) <= limits.excess);
     let most_work = (MOST_WORK_PER_QUAD * mesh.quads.len() as u64).clamp(MOST_WORK, MOST_WORK_AT_ALL);
     let mut run = Coarsening {
         boundary,
@@ -162,7 +163,7 @@ pub fn coarsen(
     Ok(run.live.compact())
 }
 
-impl Coarsening<'_> {
+impl<'a> Coarsening<'a> {
     fn merge_chord(&self, chord: &Chord) -> std::result::Result<Merge<'_>, Refusal> {
         let mesh = &self.live.mesh;
         let on_boundary = |v: u32| mesh.vertices[v as usize].place != Place::Interior;
@@ -210,7 +211,7 @@ impl Coarsening<'_> {
 
     /// The limits within some rings around the quads `at`: what is worse there already need not become
     /// better.
-    fn limits_at(&self, at: &[u32], rings: usize) -> Limits {
+    fn limits_at(&self, at: &[u32], rings: usize) -> Limits<'a> {
         if self.holds {
             return self.limits;
         }
@@ -220,6 +221,7 @@ impl Coarsening<'_> {
             limits.scaled_jacobian = limits.scaled_jacobian.min(now.scaled_jacobian);
             limits.jacobian_ratio = limits.jacobian_ratio.min(now.jacobian_ratio);
             limits.size = limits.size.max(now.size);
+            limits.excess = limits.excess.max(limits.excess_of(&self.live.mesh, q, now.size));
         }
         limits
     }

@@ -13,6 +13,7 @@
 
 mod chords;
 mod coarsen;
+mod divide;
 mod halving;
 mod live;
 mod meet;
@@ -21,6 +22,7 @@ mod patch;
 mod pieces;
 mod placement;
 mod respace;
+mod size_limit;
 mod split;
 mod stretch;
 mod subdivide;
@@ -31,10 +33,12 @@ mod trial;
 mod valence;
 
 pub use coarsen::coarsen;
+pub use divide::divide_chords;
 pub use halving::place_by_halving;
 pub use meet::meet_tolerance;
 pub use pieces::least_pieces;
 pub use placement::{place_equal_error, Placement};
+pub use size_limit::SizeLimit;
 pub use split::split_chords;
 pub use subdivide::subdivide;
 pub use thin::thin;

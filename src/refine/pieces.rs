@@ -3,11 +3,11 @@
 use crate::domain::Chain;
 use crate::error::{Error, Result};
 use crate::mesh::BoundaryError;
-use crate::numerics::tolerances::{LONGEST_LOOP_SHARE, SHORTEST_EDGE};
+use crate::numerics::tolerances::{LEAST_TOLERANCE, LONGEST_LOOP_SHARE, SHORTEST_EDGE};
 use crate::options::Norm;
 
-/// Most edges looked for on one chain.
-const MOST_PIECES: usize = 1_000_000;
+/// Most edges looked for on one chain: a tolerance that takes more is below the rounding of the curve.
+const MOST_PIECES: usize = 100_000;
 /// Most steps of one search for the end of an edge: 0.7^60 is below the shortest edge.
 const SEARCH_STEPS: usize = 60;
 /// The search for a piece's end stops when the bracket is this share of the piece.
@@ -118,6 +118,9 @@ pub(super) fn fewest(chain: &Chain, error: &BoundaryError, level: f64) -> Result
         tolerance: level,
         at: chain.point(0.0),
     };
+    if level < LEAST_TOLERANCE {
+        return Err(failed());
+    }
     let from = |start: f64| greedy(chain, error, start, start + chain.length, level, MOST_PIECES);
     if chain.ends.is_some() {
         return greedy(chain, error, 0.0, chain.length, level, MOST_PIECES).ok_or_else(failed);

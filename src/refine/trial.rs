@@ -4,23 +4,33 @@ use super::live::Removal;
 use super::merge::Merge;
 use super::patch::Patch;
 use super::respace::respace;
+use super::size_limit::SizeLimit;
+use crate::mesh::QuadMesh;
 use crate::smooth::{Aim, Effort, ElementQuality, Optimiser};
 
 /// What a coarser mesh has to keep.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
+pub struct Limits<'a> {
     /// Least scaled Jacobian; a mesh that is below already must not get worse.
     pub scaled_jacobian: f64,
     /// Least ratio of smallest to largest Jacobian inside an element, likewise.
     pub jacobian_ratio: f64,
     /// Largest mean length of opposite sides, in the canonical frame.
     pub size: f64,
+    /// The same at each place, and how many times that much is allowed.
+    pub sizes: Option<SizeLimit<'a>>,
+    pub excess: f64,
 }
 
-impl Limits {
+impl Limits<'_> {
     /// For a floor of the scaled Jacobian, without a limit on the size.
     pub fn new(scaled_jacobian: f64) -> Self {
-        Limits { scaled_jacobian, jacobian_ratio: 0.05, size: f64::INFINITY }
+        Limits { scaled_jacobian, jacobian_ratio: 0.05, size: f64::INFINITY, sizes: None, excess: 1.0 }
+    }
+
+    /// Size of `quad` of `mesh`, which is `size`, in sizes allowed there; 0 if there is no limit.
+    pub(super) fn excess_of(&self, mesh: &QuadMesh, quad: u32, size: f64) -> f64 {
+        self.sizes.map_or(0.0, |sizes| size / sizes.of_quad(mesh, quad))
     }
 }
 
@@ -55,11 +65,11 @@ pub(super) type Outcome = std::result::Result<Settled, Vec<u32>>;
 
 /// Completes a merge: boundary vertices re-spaced, the surroundings optimised, in wider attempts if the
 /// limits within so many rings do not hold yet. Adds the element evaluations spent to `work`.
-pub(super) fn settle(
+pub(super) fn settle<'a>(
     optimiser: &Optimiser,
     mut merge: Merge,
     floor: f64,
-    limits_at: &dyn Fn(usize) -> Limits,
+    limits_at: &dyn Fn(usize) -> Limits<'a>,
     work: &mut u64,
 ) -> Outcome {
     let mut seeds = merge.touched.clone();
@@ -83,7 +93,11 @@ pub(super) fn settle(
         let quality = outcome.quality;
         let others = quality.min_jacobian_ratio >= limits.jacobian_ratio
             && quality.error_ratio <= 1.0
-            && quality.elements.iter().all(|e| e.size <= limits.size);
+            && quality.elements.iter().all(|e| e.size <= limits.size)
+            && active
+                .iter()
+                .zip(&quality.elements)
+                .all(|(q, e)| limits.excess_of(&patch.mesh, *q, e.size) <= limits.excess);
         if outcome.valid && others && quality.min_scaled_jacobian >= limits.scaled_jacobian {
             return Ok(Settled { patch, removal: merge.into_removal(), active, quality: quality.elements });
         }

@@ -38,12 +38,19 @@ pub struct MeshArguments {
     /// Norm of the boundary error
     #[arg(long, value_enum, default_value_t = NormName::L2)]
     pub norm: NormName,
-    /// Largest wanted element size
+    /// Largest wanted element size; the finished mesh is divided into equal parts
     #[arg(long, value_name = "H", allow_negative_numbers = true)]
     pub max_size: Option<f64>,
-    /// Wanted element size as an expression; this version takes a constant only
-    #[arg(long, value_name = "EXPR", conflicts_with = "max_size", allow_hyphen_values = true)]
+    /// Largest wanted element size as an expression in x and y (+ - * / ^, sin, exp, sqrt, min(a, b) and
+    /// so on); with --max-size the smaller of both holds
+    #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     pub size: Option<String>,
+    /// Leave out the control file's REFINEMENT_CENTER and REFINEMENT_LINE blocks, whose sizes otherwise hold
+    #[arg(long)]
+    pub no_refinement_regions: bool,
+    /// Take the size of the control file's background grid as largest element size; without it, it is not used
+    #[arg(long)]
+    pub background_size: bool,
     /// Share of the best possible scaled Jacobian that coarsening does not take elements below
     #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     pub quality_floor: Option<f64>,

@@ -3,9 +3,9 @@
 use crate::arguments::MeshArguments;
 use crate::{progress, report, Outcome};
 use quadrel::error::{Error, Result};
-use quadrel::input::{self, Model};
+use quadrel::input::{self, Expression, Model};
 use quadrel::mesh::HighOrderMesh;
-use quadrel::options::Tolerance;
+use quadrel::options::{SizeFunction, Tolerance};
 use quadrel::output::{self, svg, Format};
 use quadrel::stages::Stages;
 use quadrel::statistics::Statistics;
@@ -74,7 +74,7 @@ fn make(arguments: &MeshArguments, stages: &mut Stages) -> std::result::Result<M
         Some(path) => input::read(path, arguments.component),
         None => input::gingerbread_man(),
     }?;
-    complete(&mut options, arguments, &model);
+    complete(&mut options, arguments, &model)?;
     let title = report::title(&model.name, &options);
     let result = quadrel::generate(&model.domain, &options, stages);
     stages.put_first(&model.warnings);
@@ -170,12 +170,7 @@ fn options(arguments: &MeshArguments) -> Result<Options> {
         ..Options::default()
     };
     if let Some(expression) = &arguments.size {
-        let constant = expression.trim().parse().map_err(|_| Error::Unsupported {
-            what: format!(
-                "--size {expression}: this version takes a constant only; give a number, or leave it out"
-            ),
-        })?;
-        options.max_element_size = Some(constant);
+        options.element_size = Some(size_function(expression)?);
     }
     if let Some(order) = arguments.order {
         options.order = order;
@@ -191,8 +186,20 @@ fn options(arguments: &MeshArguments) -> Result<Options> {
     Ok(options)
 }
 
+/// The size that an expression in x and y describes.
+fn size_function(text: &str) -> Result<SizeFunction> {
+    let expression = Expression::parse_of(text, &["x", "y"], 1, 1).map_err(|error| match error {
+        Error::Parse { what, column, .. } => {
+            let what = format!("--size, column {column}: {what}");
+            Error::Unsupported { what }
+        }
+        other => other,
+    })?;
+    Ok(SizeFunction::new(move |p| expression.value(&p)))
+}
+
 /// Adds what the arguments left open and the file says.
-fn complete(options: &mut Options, arguments: &MeshArguments, model: &Model) {
+fn complete(options: &mut Options, arguments: &MeshArguments, model: &Model) -> Result<()> {
     let embedded = arguments.domain.is_none();
     let order = if embedded { Some(EMBEDDED_ORDER) } else { model.order };
     let tolerance = if embedded { Some(EMBEDDED_TOLERANCE) } else { model.tolerance };
@@ -202,6 +209,18 @@ fn complete(options: &mut Options, arguments: &MeshArguments, model: &Model) {
     if let (None, None, Some(e)) = (arguments.tolerance, arguments.relative, tolerance) {
         options.tolerance = Tolerance::Absolute(e);
     }
+    if let (false, Some(of_file)) = (arguments.no_refinement_regions, &model.size) {
+        let own = options.element_size.take();
+        options.element_size = Some(own.map_or(of_file.clone(), |own| own.min(of_file.clone())));
+    }
+    if arguments.background_size {
+        let Some(background) = model.background_size else {
+            let what = "--background-size: the file has no background grid; leave it out".into();
+            return Err(Error::Unsupported { what });
+        };
+        options.max_element_size = Some(options.max_element_size.map_or(background, |h| h.min(background)));
+    }
+    options.check()
 }
 
 fn write_meshes(mesh: &HighOrderMesh, files: &[(PathBuf, Format)]) -> Result<Vec<PathBuf>> {
