@@ -181,7 +181,8 @@ impl BidirectedFlow {
     pub(super) fn balance(&mut self) -> Result<(), Obstruction> {
         loop {
             let left: u64 = self.excess.iter().map(|e| e.unsigned_abs() as u64).sum();
-            if (self.balance_together() as u64) * TOGETHER_WORTH < left {
+            let walks = self.balance_together() as u64;
+            if walks == 0 || walks * TOGETHER_WORTH < left {
                 break;
             }
         }
