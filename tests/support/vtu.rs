@@ -9,6 +9,7 @@ pub struct Vtu {
     pub connectivity: Vec<i64>,
     pub offsets: Vec<i64>,
     pub types: Vec<u8>,
+    /// Of each cell's four sides, empty inside.
     pub boundary_names: Vec<String>,
     arrays: BTreeMap<String, Vec<u8>>,
 }
@@ -45,15 +46,18 @@ pub fn read(bytes: &[u8]) -> Vtu {
     }
     let codes = find("Array").text().unwrap();
     let codes: Vec<u8> = codes.split_whitespace().map(|c| c.parse().unwrap()).collect();
-    let boundary_names = codes
-        .split(|c| *c == 0)
-        .map(|s| String::from_utf8(s.to_vec()).unwrap())
-        .take(find("Array").attribute("NumberOfTuples").unwrap().parse().unwrap())
-        .collect();
+    let (last, codes) = codes.split_last().unwrap();
+    assert_eq!((*last, find("Array").attribute("NumberOfComponents")), (0, Some("4")));
+    let boundary_names =
+        codes.split(|c| *c == 0).map(|s| String::from_utf8(s.to_vec()).unwrap()).collect::<Vec<_>>();
     let coordinates: Vec<f64> = words(&arrays["Points"]).map(f64::from_le_bytes).collect();
     let count = |name| find("Piece").attribute(name).unwrap().parse::<usize>().unwrap();
     assert_eq!(coordinates.len(), 3 * count("NumberOfPoints"));
     assert_eq!(arrays["types"].len(), count("NumberOfCells"));
+    assert_eq!(boundary_names.len(), 4 * count("NumberOfCells"));
+    // MFEM reads only grids that are one piece and nothing else.
+    let grid = find("UnstructuredGrid");
+    assert!(grid.children().filter(|n| n.is_element()).all(|n| n.has_tag_name("Piece")));
     Vtu {
         points: coordinates.chunks(3).map(|p| [p[0], p[1], p[2]]).collect(),
         connectivity: words(&arrays["connectivity"]).map(i64::from_le_bytes).collect(),

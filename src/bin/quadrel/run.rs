@@ -75,6 +75,9 @@ fn make(arguments: &MeshArguments, stages: &mut Stages) -> std::result::Result<M
         None => input::gingerbread_man(),
     }?;
     complete(&mut options, arguments, &model);
+    for (_, format) in &files {
+        format.check_order(options.order)?;
+    }
     let title = report::title(&model.name, &options);
     let result = quadrel::generate(&model.domain, &options, stages);
     stages.put_first(&model.warnings);
@@ -136,7 +139,8 @@ fn finish(
 fn output_files(arguments: &MeshArguments) -> Result<Vec<(PathBuf, Format)>> {
     let format = arguments.format.as_deref().map(Format::from_name).transpose()?;
     if arguments.domain.is_none() && arguments.output.is_empty() {
-        return Ok(Format::ALL.map(|f| (PathBuf::from(format!("gingerbread.{}", f.name())), f)).to_vec());
+        let shown = [Format::Vtu, Format::Svg];
+        return Ok(shown.map(|f| (PathBuf::from(format!("gingerbread.{}", f.name())), f)).to_vec());
     }
     let with_format =
         |path: &PathBuf| Ok((path.clone(), format.map_or_else(|| Format::from_path(path), Ok)?));
@@ -205,7 +209,8 @@ fn complete(options: &mut Options, arguments: &MeshArguments, model: &Model) {
 }
 
 fn write_meshes(mesh: &HighOrderMesh, files: &[(PathBuf, Format)]) -> Result<Vec<PathBuf>> {
-    let rendered: Vec<_> = files.iter().map(|(path, format)| (path.clone(), format.render(mesh))).collect();
+    let rendered = files.iter().map(|(path, format)| Ok((path.clone(), format.render(mesh)?)));
+    let rendered: Vec<_> = rendered.collect::<Result<_>>()?;
     output::write_files(&rendered)?;
     Ok(rendered.into_iter().map(|(path, _)| path).collect())
 }
