@@ -23,7 +23,8 @@ pub fn words(names: &[String]) -> Vec<String> {
         .collect()
 }
 
-/// The names as they may stand between double quotes on one line, at most `longest` bytes.
+/// The names as they may stand between double quotes on one line, at most `longest` bytes; a name that is
+/// empty becomes `boundary_K`, names that became equal get ` K` at the end.
 pub fn quotable(names: &[String], longest: usize) -> Vec<String> {
     let mut taken = BTreeSet::new();
     (1..)
@@ -33,7 +34,7 @@ pub fn quotable(names: &[String], longest: usize) -> Vec<String> {
             let mut text: String =
                 name.trim().chars().map(|c| if c == '"' { '\'' } else { plain(c) }).collect();
             if text.is_empty() {
-                text = format!("boundary {k}");
+                text = format!("boundary_{k}");
             }
             while !taken.insert(shortened(&mut text, longest)) {
                 // Room for the number, which makes the names differ.
