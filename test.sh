@@ -24,6 +24,9 @@ command -v clang++ >/dev/null || missing+=(clang libclang-rt-dev)
 [ -d /usr/include/OpenMesh ] || missing+=(libopenmesh-dev)
 compgen -G '/usr/include/vtk-9*' >/dev/null || missing+=(libvtk9-dev)
 command -v xvfb-run >/dev/null || missing+=(xvfb xauth)
+[ -f /usr/include/p4est.h ] || missing+=(libp4est-dev)
+command -v mpirun >/dev/null || missing+=(openmpi-bin)
+command -v mpicc >/dev/null || missing+=(libopenmpi-dev)
 # Files are read back by Gmsh, meshes solved on by MFEM: Python packages (about 160 MB) and what Gmsh draws with.
 python3 -c 'import ensurepip' 2>/dev/null || missing+=(python3-venv)
 for library in libGLU.so.1:libglu1-mesa libXft.so.2:libxft2 libXcursor.so.1:libxcursor1 libXinerama.so.1:libxinerama1; do
