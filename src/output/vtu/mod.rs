@@ -12,10 +12,11 @@
 //! | `boundary` | Int32 × 4 | for each side the boundary's number, −1 inside |
 //! | `boundary_name` | String × 4 | for each side the boundary's name, empty inside |
 //!
-//! Arrays of numbers are appended, zlib-compressed and base64-coded (VTK file format 2.2; see the VTK
-//! file formats documentation). There is no field data: MFEM refuses files with it.
+//! Arrays of numbers are zlib-compressed and base64-coded, each in its place (VTK file format 2.2; see the
+//! VTK file formats documentation). None is appended at the end: Debian 12's ParaView 5.11 cannot read such files,
+//! not even its own, since its expat is 2.5.0-1+deb12u2. There is no field data: MFEM refuses files with it.
 
-mod appended;
+mod encoding;
 mod nodes;
 
 pub use nodes::lagrange_index;
@@ -23,7 +24,6 @@ pub use nodes::lagrange_index;
 use super::equispaced::EquispacedNodes;
 use crate::mesh::{HighOrderMesh, Quality};
 use crate::numerics::NONE;
-use appended::Appended;
 use nodes::in_lagrange_order;
 use std::fmt::Write;
 
@@ -35,7 +35,6 @@ pub fn render(mesh: &HighOrderMesh) -> Vec<u8> {
     let shared = EquispacedNodes::new(mesh);
     let cells = mesh.elements.len();
     let per_cell = (mesh.order + 1) * (mesh.order + 1);
-    let mut data = Appended::default();
     let mut xml = String::new();
     xml.push_str(concat!(
         "<?xml version=\"1.0\"?>\n",
@@ -46,17 +45,15 @@ pub fn render(mesh: &HighOrderMesh) -> Vec<u8> {
     let _ = writeln!(xml, "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{cells}\">", shared.points.len());
 
     xml.push_str("<CellData Scalars=\"scaled_jacobian\">\n");
-    let mut array = |xml: &mut String, kind: Kind, name: &str, components: usize, bytes: Vec<u8>| {
-        let offset = data.push(&bytes);
+    let array = |xml: &mut String, kind: Kind, name: &str, components: usize, bytes: Vec<u8>| {
         let components = match components {
             1 => String::new(),
             n => format!(" NumberOfComponents=\"{n}\""),
         };
-        let _ = writeln!(
-            xml,
-            "<DataArray type=\"{}\" Name=\"{name}\"{components} format=\"appended\" offset=\"{offset}\"/>",
-            kind.name()
-        );
+        let kind = kind.name();
+        let _ = writeln!(xml, "<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"binary\">");
+        encoding::push(xml, &bytes);
+        xml.push_str("\n</DataArray>\n");
     };
     array(&mut xml, Kind::F64, "scaled_jacobian", 1, doubles(mesh.scaled_jacobian.iter().copied()));
     let quality = Quality::new(mesh.order);
@@ -75,10 +72,7 @@ pub fn render(mesh: &HighOrderMesh) -> Vec<u8> {
     array(&mut xml, Kind::I64, "connectivity", 1, longs(connectivity.map(i64::from)));
     array(&mut xml, Kind::I64, "offsets", 1, longs((1..=cells).map(|c| (c * per_cell) as i64)));
     array(&mut xml, Kind::U8, "types", 1, vec![VTK_LAGRANGE_QUADRILATERAL; cells]);
-    xml.push_str("</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"base64\">\n_");
-
-    xml.push_str(data.as_str());
-    xml.push_str("\n</AppendedData>\n</VTKFile>\n");
+    xml.push_str("</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
     xml.into_bytes()
 }
 
