@@ -19,7 +19,7 @@ def main():
             if row["route"] == "arrays":
                 curves.setdefault(row["domain"], []).append((int(row["p"]), float(row["error"])))
     figure, axes = plt.subplots(figsize=(5.2, 3.2))
-    for (name, points), marker in zip(curves.items(), "osd^"):
+    for (name, points), marker in zip(curves.items(), "osd^v"):
         axes.semilogy(*zip(*points), marker=marker, markersize=4, linewidth=1.2, label=name)
     axes.set_xlabel("order p of the solution")
     axes.set_ylabel("relative L2 error")
