@@ -24,6 +24,14 @@ command -v clang++ >/dev/null || missing+=(clang libclang-rt-dev)
 [ -d /usr/include/OpenMesh ] || missing+=(libopenmesh-dev)
 compgen -G '/usr/include/vtk-9*' >/dev/null || missing+=(libvtk9-dev)
 command -v xvfb-run >/dev/null || missing+=(xvfb xauth)
+[ -f /usr/include/p4est.h ] || missing+=(libp4est-dev)
+command -v mpirun >/dev/null || missing+=(openmpi-bin)
+command -v mpicc >/dev/null || missing+=(libopenmpi-dev)
+# Files are read back by Gmsh, meshes solved on by MFEM: Python packages (about 160 MB) and what Gmsh draws with.
+python3 -c 'import ensurepip' 2>/dev/null || missing+=(python3-venv)
+for library in libGLU.so.1:libglu1-mesa libXft.so.2:libxft2 libXcursor.so.1:libxcursor1 libXinerama.so.1:libxinerama1; do
+    ldconfig -p | grep -qF "${library%%:*}" || missing+=("${library##*:}")
+done
 if ! command -v cargo >/dev/null && [ ! -x "$HOME/.cargo/bin/cargo" ]; then
     command -v curl >/dev/null || missing+=(curl ca-certificates)
 fi
@@ -57,7 +65,17 @@ cargo test --release --locked
 step "C and C++"
 # One folder for cargo and all builds of the tests.
 interface="$PWD/target/interface"
-configure() { cmake -S cpp_tests -B "$@" -DQUADREL_CARGO_TARGET_DIR="$interface/cargo" >/dev/null; }
+python="$interface/python/bin/python"
+if ! "$python" -c 'import gmsh, numpy, mfem' 2>/dev/null; then
+    say "installing gmsh, mfem and numpy for Python into target/interface/python"
+    python3 -m venv "$interface/python"
+    "$python" -m pip install --quiet --disable-pip-version-check numpy gmsh==4.15.2
+    # For its C++ library alone: its Python needs much more.
+    "$python" -m pip install --quiet --disable-pip-version-check --no-deps mfem==4.10.0.1
+fi
+configure() {
+    cmake -S cpp_tests -B "$@" -DQUADREL_CARGO_TARGET_DIR="$interface/cargo" -DQUADREL_TEST_PYTHON="$python" >/dev/null
+}
 configure "$interface/tests"
 cmake --build "$interface/tests" --parallel 2
 ctest --test-dir "$interface/tests" --output-on-failure --parallel 2

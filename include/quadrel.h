@@ -701,8 +701,20 @@ typedef int32_t quadrel_picture;
 
 /** VTK XML unstructured grid of Lagrange quadrilaterals (nodes equispaced), for ParaView and MFEM */
 #define QUADREL_FORMAT_VTU 0
+/** Gmsh 4.1 (nodes equispaced), orders 1 to 10 */
+#define QUADREL_FORMAT_MSH 1
+/** HOHQMesh's ISM-v2: corners, edges, curved sides */
+#define QUADREL_FORMAT_ISM_V2 2
+/** HOHQMesh's ISM-MM: corners, curved sides, a material for each element */
+#define QUADREL_FORMAT_ISM_MM 3
+/** Abaqus with HOHQMesh's curved sides in comments, for Trixi.jl */
+#define QUADREL_FORMAT_INP 4
+/** MFEM mesh v1.0, nodes at the Gauss-Lobatto points */
+#define QUADREL_FORMAT_MFEM 5
 /** a picture */
 #define QUADREL_FORMAT_SVG 6
+/** HOHQMesh's ISM: corners, curved sides */
+#define QUADREL_FORMAT_ISM 7
 /** the boundary and its junctions */
 #define QUADREL_PICTURE_BOUNDARY 0
 /** the base mesh */
@@ -720,7 +732,10 @@ typedef int32_t quadrel_picture;
 /** all stages reached side by side, and the mesh */
 #define QUADREL_PICTURE_ALL 100
 
-/** Writes the mesh to a file, whole or not at all; format is a QUADREL_FORMAT number. */
+/**
+ * Writes the mesh to a file, whole or not at all; format is a QUADREL_FORMAT number.
+ * QUADREL_ERROR_UNSUPPORTED where the format cannot hold the mesh's order.
+ */
 quadrel_status quadrel_mesh_write(const quadrel_mesh *mesh, quadrel_format format, const char *path);
 
 /**

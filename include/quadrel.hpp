@@ -46,7 +46,16 @@ enum class Subdivision : quadrel_subdivision {
   EqualError = QUADREL_SUBDIVISION_EQUAL_ERROR,
   Halving = QUADREL_SUBDIVISION_HALVING
 };
-enum class Format : quadrel_format { Vtu = QUADREL_FORMAT_VTU, Svg = QUADREL_FORMAT_SVG };
+enum class Format : quadrel_format {
+  Vtu = QUADREL_FORMAT_VTU,
+  Msh = QUADREL_FORMAT_MSH,
+  Ism = QUADREL_FORMAT_ISM,
+  IsmV2 = QUADREL_FORMAT_ISM_V2,
+  IsmMm = QUADREL_FORMAT_ISM_MM,
+  Inp = QUADREL_FORMAT_INP,
+  Mfem = QUADREL_FORMAT_MFEM,
+  Svg = QUADREL_FORMAT_SVG
+};
 
 // What quadrel reports: the status, a sentence, and the place in the domain if there is one.
 class Error : public std::runtime_error {

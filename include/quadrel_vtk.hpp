@@ -5,8 +5,8 @@
 // One VTK_LAGRANGE_QUADRILATERAL an element, of the mesh's order, in the plane z = 0: the same grid as the .vtu
 // file. Needs VTK 9's CommonCore and CommonDataModel. The grid owns its data; the mesh may go.
 //
-// Cell data: scaled_jacobian and jacobian_ratio (the measures of these names in quadrel.h), block, and boundary
-// (the boundary's number at each of the four sides, -1 inside). Field data: boundary_names.
+// Cell data: scaled_jacobian and jacobian_ratio (the measures of these names in quadrel.h), block, boundary
+// (the boundary's number at each of the four sides, -1 inside), and boundary_name (its name there, empty inside).
 #ifndef QUADREL_VTK_HPP
 #define QUADREL_VTK_HPP
 
@@ -19,7 +19,6 @@
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
-#include <vtkFieldData.h>
 #include <vtkIdTypeArray.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
@@ -181,11 +180,13 @@ inline vtkSmartPointer<vtkUnstructuredGrid> vtk_grid(const quadrel_mesh* mesh) {
   grid->GetCellData()->AddArray(block);
   grid->GetCellData()->AddArray(boundary);
   vtkNew<vtkStringArray> names;
-  names->SetName("boundary_names");
-  for (std::size_t k = 0; k < quadrel_mesh_boundary_count(mesh); ++k) {
-    names->InsertNextValue(quadrel_mesh_boundary_name(mesh, static_cast<std::int32_t>(k)));
+  names->SetName("boundary_name");
+  names->SetNumberOfComponents(4);
+  for (std::size_t k = 0; k < 4 * elements; ++k) {
+    const char* const name = quadrel_mesh_boundary_name(mesh, quadrel_mesh_element_boundaries(mesh)[k]);
+    names->InsertNextValue(name ? name : "");
   }
-  grid->GetFieldData()->AddArray(names);
+  grid->GetCellData()->AddArray(names);
   return grid;
 }
 

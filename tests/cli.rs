@@ -70,9 +70,10 @@ fn wrong_usage_ends_with_2_and_writes_nothing() {
         (&["noise.control", "-o", "m.vtu"], "line"),
         (&["broken.svg", "-o", "m.vtu"], "broken.svg"),
         (&["mesh.xyz", "-o", "m.vtu"], ".control"),
-        (&["plate.svg", "-o", "m.stl"], "vtu, svg"),
-        (&["plate.svg", "-o", "m"], "extension"),
-        (&["plate.svg", "-o", "m.vtu", "--format", "stl"], "vtu, svg"),
+        (&["plate.svg", "-o", "m.stl"], "vtu, msh, ism, ism-v2, ism-mm, inp, mfem, svg"),
+        (&["plate.svg", "-o", "m"], ".mesh is ism-v2"),
+        (&["plate.svg", "-o", "m.vtu", "--format", "stl"], "vtu, msh"),
+        (&["plate.svg", "-o", "m.vtu", "-o", "m.msh", "--order", "11"], "order 1 to 10"),
         (&["plate.svg", "-o", "no/such/m.vtu"], "folder"),
         (&["plate.svg", "-o", "plate.svg"], "domain's own file"),
         (&["plate.svg", "-o", "m.vtu", "--order", "0"], "order"),
@@ -344,4 +345,48 @@ fn inner_boundaries_of_a_control_file_are_reduced() {
     let reduced = fs::read_to_string(dir.join("d.reduced.control")).unwrap();
     assert_eq!(reduced.matches("\\begin{CHAIN}").count(), 2, "{reduced}");
     assert!(reduced.contains("name = b") && reduced.contains("name = c"));
+}
+
+/// A folder in which nobody can make a file: one without the right to write, or, for root, whom that does not
+/// stop, the kernel's.
+#[cfg(unix)]
+fn read_only_folder(dir: &Path) -> PathBuf {
+    use std::os::unix::fs::PermissionsExt;
+    let locked = dir.join("locked");
+    fs::create_dir(&locked).unwrap();
+    fs::set_permissions(&locked, fs::Permissions::from_mode(0o555)).unwrap();
+    match fs::write(locked.join("probe"), "") {
+        Ok(()) => PathBuf::from("/sys"),
+        Err(_) => locked,
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_cannot_be_written_leaves_no_part_of_a_file() {
+    let dir = folder("unwritable");
+    fs::write(dir.join("plate.svg"), RECTANGLE).unwrap();
+    fs::create_dir(dir.join("taken.msh")).unwrap();
+    fs::write(dir.join("kept.msh"), "before").unwrap();
+    let locked = read_only_folder(&dir);
+    let before = listing(&dir);
+    let in_locked = locked.join("mesh.msh").display().to_string();
+    // A full disk is a device that is always full, and, for regular files, a limit on their size.
+    let limited = "trap '' XFSZ; ulimit -f 1; exec \"$0\" plate.svg --order 8";
+    let exe = env!("CARGO_BIN_EXE_quadrel");
+    let cases: &[(&str, &[&str], &str)] = &[
+        (exe, &["plate.svg", "-o", "taken.msh"], "taken.msh: is a folder"),
+        (exe, &["plate.svg", "-o", &in_locked], &in_locked),
+        (exe, &["plate.svg", "-o", "/dev/full", "--format", "msh"], "/dev/full: cannot be written: No space"),
+        ("sh", &["-c", &format!("{limited} -o new.msh"), exe], "new.msh: cannot be written: File too large"),
+        ("sh", &["-c", &format!("{limited} -o small.ism -o kept.msh"), exe], "kept.msh: cannot be written"),
+    ];
+    for (program, arguments, expected) in cases {
+        let output = Command::new(program).current_dir(&dir).args(*arguments).output().unwrap();
+        let said = text(&output.stderr);
+        assert_eq!(status(&output), 2, "{arguments:?}: {said}");
+        assert!(said.contains(expected), "{arguments:?} says: {said}");
+        assert_eq!(listing(&dir), before, "{arguments:?} left something");
+        assert_eq!(fs::read_to_string(dir.join("kept.msh")).unwrap(), "before");
+    }
 }

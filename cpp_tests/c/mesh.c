@@ -134,9 +134,10 @@ static int refuse_bytes(void *user, const void *bytes, size_t count) {
 }
 
 static void files(const quadrel_mesh *mesh) {
-    const quadrel_format formats[2] = {QUADREL_FORMAT_VTU, QUADREL_FORMAT_SVG};
+    const quadrel_format formats[8] = {QUADREL_FORMAT_VTU,    QUADREL_FORMAT_MSH, QUADREL_FORMAT_ISM,  QUADREL_FORMAT_ISM_V2,
+                                       QUADREL_FORMAT_ISM_MM, QUADREL_FORMAT_INP, QUADREL_FORMAT_MFEM, QUADREL_FORMAT_SVG};
     int k;
-    for (k = 0; k < 2; ++k) {
+    for (k = 0; k < 8; ++k) {
         size_t streamed = 0, calls = 0;
         FILE *file;
         OK(quadrel_mesh_write(mesh, formats[k], "plate.out"));
@@ -153,7 +154,7 @@ static void files(const quadrel_mesh *mesh) {
     }
     remove("plate.out");
     CHECK_STATUS(quadrel_mesh_write(mesh, QUADREL_FORMAT_VTU, "no/such/folder/a.vtu"), QUADREL_ERROR_IO);
-    CHECK_STATUS(quadrel_mesh_write(mesh, 1, "a.msh"), QUADREL_ERROR_INVALID_ARGUMENT);
+    CHECK_STATUS(quadrel_mesh_write(mesh, 99, "a.msh"), QUADREL_ERROR_INVALID_ARGUMENT);
     CHECK_STATUS(quadrel_mesh_write(mesh, QUADREL_FORMAT_VTU, NULL), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_mesh_write(NULL, QUADREL_FORMAT_VTU, "a.vtu"), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_mesh_write_to(mesh, QUADREL_FORMAT_VTU, NULL, NULL), QUADREL_ERROR_NULL);

@@ -72,7 +72,14 @@ void meshes() {
   mesh.write(quadrel::Format::Svg, "layer.svg");
   CHECK(std::remove("layer.svg") == 0);
   CHECK(thrown([&] { mesh.write(quadrel::Format::Vtu, "no/such/folder/x.vtu"); }) == QUADREL_ERROR_IO);
-  CHECK(thrown([&] { mesh.write(quadrel::Format::Vtu, [](const void*, std::size_t) { return false; }); }) == QUADREL_ERROR_CANCELLED);
+  for (quadrel::Format format : {quadrel::Format::Vtu, quadrel::Format::Msh, quadrel::Format::Ism, quadrel::Format::IsmV2,
+                                 quadrel::Format::IsmMm, quadrel::Format::Inp, quadrel::Format::Mfem, quadrel::Format::Svg}) {
+    CHECK(thrown([&] { mesh.write(format, [](const void*, std::size_t) { return false; }); }) == QUADREL_ERROR_CANCELLED);
+    CHECK(thrown([&] { mesh.write(format, "/dev/full"); }) == QUADREL_ERROR_IO);
+  }
+  const quadrel::Mesh high = quadrel::generate(domain, quadrel::Options().order(11).relative_tolerance(1e-3));
+  CHECK(thrown([&] { high.write(quadrel::Format::Msh, "layer.msh"); }) == QUADREL_ERROR_UNSUPPORTED);
+  CHECK(std::remove("layer.msh") != 0);
 
   CHECK(stages.reached() == QUADREL_STAGE_MESH && stages.seconds(QUADREL_STAGE_LAYOUT) >= 0);
   CHECK(stages.base_vertices().size() == stages.cross_field().size() && !stages.base_triangles().empty());

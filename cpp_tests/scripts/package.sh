@@ -9,7 +9,7 @@ rm -rf "$folder"
 mkdir -p "$folder"
 cmake --install "$build" --prefix "$folder/first" > "$folder/install.log"
 mv "$folder/first" "$folder/moved"
-for file in quadrel.h quadrel.hpp quadrel_vtk.hpp; do [ -f "$folder/moved/include/$file" ] || { echo "$file is missing"; exit 1; }; done
+for file in quadrel.h quadrel.hpp quadrel_vtk.hpp quadrel_p4est.h; do [ -f "$folder/moved/include/$file" ] || { echo "$file is missing"; exit 1; }; done
 if grep -rIl "$folder/first" "$folder/moved"; then echo "these files know where they were installed"; exit 1; fi
 cmake -S "$consumer" -B "$folder/consumer" -DCMAKE_PREFIX_PATH="$folder/moved" -DCMAKE_BUILD_TYPE=Release > "$folder/configure.log"
 cmake --build "$folder/consumer" > "$folder/build.log"

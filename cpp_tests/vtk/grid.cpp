@@ -75,7 +75,7 @@ void arrays(vtkUnstructuredGrid* grid, const quadrel::Mesh& mesh) {
   const auto cells = static_cast<vtkIdType>(mesh.element_count());
   CHECK(grid->GetNumberOfCells() == cells && grid->GetNumberOfPoints() == static_cast<vtkIdType>(mesh.node_count()));
   vtkCellData* const data = grid->GetCellData();
-  CHECK(data->GetNumberOfArrays() == 4 && data->GetScalars() == data->GetArray("scaled_jacobian"));
+  CHECK(data->GetNumberOfArrays() == 5 && data->GetScalars() == data->GetArray("scaled_jacobian"));
   const char* const names[4] = {"scaled_jacobian", "jacobian_ratio", "block", "boundary"};
   const int types[4] = {VTK_DOUBLE, VTK_DOUBLE, VTK_INT, VTK_INT};
   for (int k = 0; k < 4; ++k) {
@@ -92,10 +92,10 @@ void arrays(vtkUnstructuredGrid* grid, const quadrel::Mesh& mesh) {
     CHECK(data->GetArray("block")->GetComponent(c, 0) == mesh.element_blocks()[e]);
     for (int s = 0; s < 4; ++s) CHECK(data->GetArray("boundary")->GetComponent(c, s) == mesh.element_boundaries()[4 * e + static_cast<std::size_t>(s)]);
   }
-  const auto* const boundaries = vtkStringArray::SafeDownCast(grid->GetFieldData()->GetAbstractArray("boundary_names"));
-  CHECK(boundaries && boundaries->GetNumberOfValues() == static_cast<vtkIdType>(mesh.boundary_count()));
+  const auto boundaries = vtkStringArray::SafeDownCast(data->GetAbstractArray("boundary_name"));
+  CHECK(boundaries && boundaries->GetNumberOfComponents() == 4 && boundaries->GetNumberOfValues() == 4 * cells);
   for (vtkIdType k = 0; boundaries && k < boundaries->GetNumberOfValues(); ++k) {
-    CHECK(const_cast<vtkStringArray*>(boundaries)->GetValue(k) == mesh.boundary_name(static_cast<std::int32_t>(k)));
+    CHECK(boundaries->GetValue(k) == mesh.boundary_name(mesh.element_boundaries()[static_cast<std::size_t>(k)]));
   }
 }
 

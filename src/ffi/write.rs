@@ -13,8 +13,20 @@ pub type quadrel_format = i32;
 
 /// VTK XML unstructured grid of Lagrange quadrilaterals (nodes equispaced), for ParaView and MFEM
 pub const QUADREL_FORMAT_VTU: quadrel_format = 0;
+/// Gmsh 4.1 (nodes equispaced), orders 1 to 10
+pub const QUADREL_FORMAT_MSH: quadrel_format = 1;
+/// HOHQMesh's ISM-v2: corners, edges, curved sides
+pub const QUADREL_FORMAT_ISM_V2: quadrel_format = 2;
+/// HOHQMesh's ISM-MM: corners, curved sides, a material for each element
+pub const QUADREL_FORMAT_ISM_MM: quadrel_format = 3;
+/// Abaqus with HOHQMesh's curved sides in comments, for Trixi.jl
+pub const QUADREL_FORMAT_INP: quadrel_format = 4;
+/// MFEM mesh v1.0, nodes at the Gauss-Lobatto points
+pub const QUADREL_FORMAT_MFEM: quadrel_format = 5;
 /// a picture
 pub const QUADREL_FORMAT_SVG: quadrel_format = 6;
+/// HOHQMesh's ISM: corners, curved sides
+pub const QUADREL_FORMAT_ISM: quadrel_format = 7;
 
 /// Takes count bytes of a file. Returns 0, or non-zero to stop.
 pub type quadrel_write_fn =
@@ -46,12 +58,19 @@ const PIECE: usize = 1 << 16;
 fn format_of(format: quadrel_format) -> Result<Format, Failure> {
     match format {
         QUADREL_FORMAT_VTU => Ok(Format::Vtu),
+        QUADREL_FORMAT_MSH => Ok(Format::Msh),
+        QUADREL_FORMAT_ISM_V2 => Ok(Format::IsmV2),
+        QUADREL_FORMAT_ISM_MM => Ok(Format::IsmMm),
+        QUADREL_FORMAT_INP => Ok(Format::Inp),
+        QUADREL_FORMAT_MFEM => Ok(Format::Mfem),
         QUADREL_FORMAT_SVG => Ok(Format::Svg),
+        QUADREL_FORMAT_ISM => Ok(Format::Ism),
         _ => Err(Failure::argument("the format", format, "a QUADREL_FORMAT number")),
     }
 }
 
 /// Writes the mesh to a file, whole or not at all; format is a QUADREL_FORMAT number.
+/// QUADREL_ERROR_UNSUPPORTED where the format cannot hold the mesh's order.
 #[no_mangle]
 pub unsafe extern "C" fn quadrel_mesh_write(
     mesh: *const quadrel_mesh,
@@ -78,7 +97,7 @@ pub unsafe extern "C" fn quadrel_mesh_write_to(
         // SAFETY: the caller's promise (first comment of the header).
         let mesh = unsafe { required(mesh, "the mesh") }?;
         let write = write.ok_or_else(|| Failure::null("the function"))?;
-        for piece in format_of(format)?.render(&mesh.mesh).chunks(PIECE) {
+        for piece in format_of(format)?.render(&mesh.mesh)?.chunks(PIECE) {
             // SAFETY: the function and its user pointer came together from the caller.
             let answer = unsafe { write(user, piece.as_ptr().cast(), piece.len()) };
             if answer != 0 {

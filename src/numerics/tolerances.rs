@@ -200,3 +200,6 @@ pub const GIVEN_OFF_CURVE: f64 = 0.2;
 /// Farthest that a straight chain's table may be off the segment between its ends, relative to the chain's length:
 /// rounding, also far from the caller's origin. Edges on it count as free of any boundary error.
 pub const STRAIGHT_CHAIN: f64 = 1e-11;
+/// Distance of an edge's nodes from their places on the straight line between its ends, relative to the
+/// largest coordinate of the ends, that is rounding: files then call the side straight. 16 roundings.
+pub const STRAIGHT_SIDE: f64 = 16.0 * f64::EPSILON;

@@ -1,4 +1,4 @@
-//! A small reader of `.vtu` files with appended, zlib-compressed, base64-coded arrays.
+//! A small reader of `.vtu` files with zlib-compressed, base64-coded arrays in their places.
 
 use base64::engine::general_purpose::STANDARD;
 use base64::Engine;
@@ -9,6 +9,7 @@ pub struct Vtu {
     pub connectivity: Vec<i64>,
     pub offsets: Vec<i64>,
     pub types: Vec<u8>,
+    /// Of each cell's four sides, empty inside.
     pub boundary_names: Vec<String>,
     arrays: BTreeMap<String, Vec<u8>>,
 }
@@ -37,23 +38,25 @@ pub fn read(bytes: &[u8]) -> Vtu {
         assert_eq!(root.attribute(name), Some(value), "attribute {name}");
     }
     let find = |name: &str| root.descendants().find(|n| n.has_tag_name(name)).unwrap();
-    let appended = find("AppendedData").text().unwrap().trim().strip_prefix('_').unwrap();
     let mut arrays = BTreeMap::new();
     for array in root.descendants().filter(|n| n.has_tag_name("DataArray")) {
-        let offset: usize = array.attribute("offset").unwrap().parse().unwrap();
-        arrays.insert(array.attribute("Name").unwrap().to_string(), decode(&appended[offset..]));
+        assert_eq!(array.attribute("format"), Some("binary"));
+        arrays.insert(array.attribute("Name").unwrap().to_string(), decode(array.text().unwrap().trim()));
     }
     let codes = find("Array").text().unwrap();
     let codes: Vec<u8> = codes.split_whitespace().map(|c| c.parse().unwrap()).collect();
-    let boundary_names = codes
-        .split(|c| *c == 0)
-        .map(|s| String::from_utf8(s.to_vec()).unwrap())
-        .take(find("Array").attribute("NumberOfTuples").unwrap().parse().unwrap())
-        .collect();
+    let (last, codes) = codes.split_last().unwrap();
+    assert_eq!((*last, find("Array").attribute("NumberOfComponents")), (0, Some("4")));
+    let boundary_names =
+        codes.split(|c| *c == 0).map(|s| String::from_utf8(s.to_vec()).unwrap()).collect::<Vec<_>>();
     let coordinates: Vec<f64> = words(&arrays["Points"]).map(f64::from_le_bytes).collect();
     let count = |name| find("Piece").attribute(name).unwrap().parse::<usize>().unwrap();
     assert_eq!(coordinates.len(), 3 * count("NumberOfPoints"));
     assert_eq!(arrays["types"].len(), count("NumberOfCells"));
+    assert_eq!(boundary_names.len(), 4 * count("NumberOfCells"));
+    // MFEM reads only grids that are one piece and nothing else.
+    let grid = find("UnstructuredGrid");
+    assert!(grid.children().filter(|n| n.is_element()).all(|n| n.has_tag_name("Piece")));
     Vtu {
         points: coordinates.chunks(3).map(|p| [p[0], p[1], p[2]]).collect(),
         connectivity: words(&arrays["connectivity"]).map(i64::from_le_bytes).collect(),
@@ -74,7 +77,8 @@ fn decode(text: &str) -> Vec<u8> {
     let (size, last) = (number(&header, 1), number(&header, 2));
     let sizes: Vec<usize> = (0..blocks).map(|b| number(&header, 3 + b)).collect();
     let start = run(header.len());
-    let packed = STANDARD.decode(&text[start..start + run(sizes.iter().sum())]).unwrap();
+    assert_eq!(text.len(), start + run(sizes.iter().sum()), "nothing follows the blocks");
+    let packed = STANDARD.decode(&text[start..]).unwrap();
     let (mut at, mut data) = (0, Vec::new());
     for (b, length) in sizes.into_iter().enumerate() {
         let block = miniz_oxide::inflate::decompress_to_vec_zlib(&packed[at..at + length]).unwrap();

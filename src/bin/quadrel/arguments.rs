@@ -45,9 +45,10 @@ pub struct MeshArguments {
     /// so on); with --max-size the smaller of both holds
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     pub size: Option<String>,
-    /// Leave out the control file's REFINEMENT_CENTER and REFINEMENT_LINE blocks, whose sizes otherwise hold
+    /// Apply the sizes of the control file's REFINEMENT_CENTER and REFINEMENT_LINE blocks; without it, they are
+    /// not used
     #[arg(long)]
-    pub no_refinement_regions: bool,
+    pub refinement_regions: bool,
     /// Take the size of the control file's background grid as largest element size; without it, it is not used
     #[arg(long)]
     pub background_size: bool,
@@ -63,10 +64,11 @@ pub struct MeshArguments {
     /// Which component of a file with several, counted from 0 by descending area
     #[arg(long, value_name = "K")]
     pub component: Option<usize>,
-    /// File to write the mesh to, its format by its extension (.vtu, .svg); may be given several times
+    /// File to write the mesh to, its format by its extension, which is a format's name or .mesh for ism-v2; may
+    /// be given several times
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Vec<PathBuf>,
-    /// Format of every -o, whatever the extension
+    /// Format of every -o, whatever the extension: vtu, msh, ism, ism-v2, ism-mm, inp, mfem or svg
     #[arg(long, value_name = "FORMAT")]
     pub format: Option<String>,
     /// Folder for a picture of every stage reached, also on failure

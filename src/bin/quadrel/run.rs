@@ -75,9 +75,16 @@ fn make(arguments: &MeshArguments, stages: &mut Stages) -> std::result::Result<M
         None => input::gingerbread_man(),
     }?;
     complete(&mut options, arguments, &model)?;
+    for (_, format) in &files {
+        format.check_order(options.order)?;
+    }
     let title = report::title(&model.name, &options);
     let result = quadrel::generate(&model.domain, &options, stages);
     stages.put_first(&model.warnings);
+    if model.size.is_some() && !arguments.refinement_regions {
+        let what = "the file's refinement regions are left out; --refinement-regions applies their sizes";
+        stages.put_first(&[what.into()]);
+    }
     Ok(Made { mesh: result?, files, title })
 }
 
@@ -136,7 +143,8 @@ fn finish(
 fn output_files(arguments: &MeshArguments) -> Result<Vec<(PathBuf, Format)>> {
     let format = arguments.format.as_deref().map(Format::from_name).transpose()?;
     if arguments.domain.is_none() && arguments.output.is_empty() {
-        return Ok(Format::ALL.map(|f| (PathBuf::from(format!("gingerbread.{}", f.name())), f)).to_vec());
+        let shown = [Format::Vtu, Format::Svg];
+        return Ok(shown.map(|f| (PathBuf::from(format!("gingerbread.{}", f.name())), f)).to_vec());
     }
     let with_format =
         |path: &PathBuf| Ok((path.clone(), format.map_or_else(|| Format::from_path(path), Ok)?));
@@ -209,7 +217,7 @@ fn complete(options: &mut Options, arguments: &MeshArguments, model: &Model) -> 
     if let (None, None, Some(e)) = (arguments.tolerance, arguments.relative, tolerance) {
         options.tolerance = Tolerance::Absolute(e);
     }
-    if let (false, Some(of_file)) = (arguments.no_refinement_regions, &model.size) {
+    if let (true, Some(of_file)) = (arguments.refinement_regions, &model.size) {
         let own = options.element_size.take();
         options.element_size = Some(own.map_or(of_file.clone(), |own| own.min(of_file.clone())));
     }
@@ -224,7 +232,8 @@ fn complete(options: &mut Options, arguments: &MeshArguments, model: &Model) -> 
 }
 
 fn write_meshes(mesh: &HighOrderMesh, files: &[(PathBuf, Format)]) -> Result<Vec<PathBuf>> {
-    let rendered: Vec<_> = files.iter().map(|(path, format)| (path.clone(), format.render(mesh))).collect();
+    let rendered = files.iter().map(|(path, format)| Ok((path.clone(), format.render(mesh)?)));
+    let rendered: Vec<_> = rendered.collect::<Result<_>>()?;
     output::write_files(&rendered)?;
     Ok(rendered.into_iter().map(|(path, _)| path).collect())
 }
