@@ -101,7 +101,7 @@ impl BidirectedFlow {
         if s == self.ground() {
             return true;
         }
-        let unit = if s.is_multiple_of(2) { 1 } else { -1 };
+        let unit = if s % 2 == 0 { 1 } else { -1 };
         let other = (s / 2) as usize;
         // The walk's own start has already lost one unit.
         self.excess[other] * unit < 0 && (other != from || self.excess[from].abs() >= 2)
@@ -122,7 +122,7 @@ impl BidirectedFlow {
         let mut walks = 0;
         while let Some(Reverse((d, s, from, before, a, step))) = heap.pop() {
             let ground = s == self.ground();
-            let unit = if from.is_multiple_of(2) { 1 } else { -1 };
+            let unit = if from % 2 == 0 { 1 } else { -1 };
             let settled = self.excess[(from / 2) as usize] * unit <= 0;
             if settled || (scratch.stamp[s as usize] == round && !ground) {
                 continue;
