@@ -83,7 +83,7 @@ fn wrong_usage_ends_with_2_and_writes_nothing() {
         (&["plate.svg", "-o", "m.vtu", "--relative", "nan"], "tolerance"),
         (&["plate.svg", "-o", "m.vtu", "--tolerance", "1", "--relative", "1"], "--relative"),
         (&["plate.svg", "-o", "m.vtu", "--max-size", "0"], "size"),
-        (&["plate.svg", "-o", "m.vtu", "--size", "x + 1"], "constant"),
+        (&["plate.svg", "-o", "m.vtu", "--size", "x +"], "term is expected"),
         (&["plate.svg", "-o", "m.vtu", "--quality-floor", "1.5"], "quality floor"),
         (&["plate.svg", "-o", "m.vtu", "--norm", "l7"], "l7"),
         (&["plate.svg", "-o", "m.vtu", "--threads", "0"], "--threads"),

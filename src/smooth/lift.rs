@@ -8,7 +8,13 @@ use crate::mesh::QuadMesh;
 const RINGS: [usize; 3] = [2, 3, 5];
 
 /// See [`Optimiser::lift`].
-pub(super) fn lift(optimiser: &Optimiser, mesh: &mut QuadMesh, floor: f64, most_work: u64) -> u64 {
+pub(super) fn lift(
+    optimiser: &Optimiser,
+    mesh: &mut QuadMesh,
+    floor: f64,
+    effort: Effort,
+    most_work: u64,
+) -> u64 {
     let around = quads_around(mesh);
     let all: Vec<u32> = (0..mesh.quads.len() as u32).collect();
     let mut work = 0;
@@ -21,7 +27,7 @@ pub(super) fn lift(optimiser: &Optimiser, mesh: &mut QuadMesh, floor: f64, most_
             }
             let saved = Saved::of(mesh, &part);
             let before = optimiser.quality_of(mesh, Some(&part));
-            work += optimiser.optimise(mesh, Some(&part), Effort::Final).work;
+            work += optimiser.optimise(mesh, Some(&part), effort).work;
             let after = optimiser.quality_of(mesh, Some(&part));
             if !after.valid()
                 || after.min_scaled_jacobian < before.min_scaled_jacobian

@@ -308,7 +308,7 @@ impl<'a> Optimiser<'a> {
     /// itself, as often as that helps: one poor place needs steps that all others would waste. What gets worse is
     /// undone. The work spent.
     pub fn lift(&self, mesh: &mut QuadMesh, floor: f64) -> u64 {
-        lift(self, mesh, floor, MOST_WORK)
+        lift(self, mesh, floor, Effort::Final, MOST_WORK)
     }
 
     /// `mesh` as a function of what may move.
@@ -379,7 +379,7 @@ impl<'a> Optimiser<'a> {
         if valid && active.is_none() && problem.scaled_jacobian < POOR {
             // One element that is hardly valid would stop all others: its energy outweighs theirs.
             problem.store(mesh);
-            *work += lift(self, mesh, POOR, MOST_POOR_WORK);
+            *work += lift(self, mesh, POOR, effort, MOST_POOR_WORK);
             problem = self.problem(reference, mesh, active, true, effort);
         }
         if valid {

@@ -332,7 +332,7 @@ mod tests {
         let mut mesh =
             QuadMesh::new(&boundary, vertices, quads, vec![0; 5], &HashMap::new()).expect("a mesh");
         for (i, edge) in mesh.edges.iter_mut().enumerate().filter(|(_, e)| e.span.is_none()) {
-            edge.bubbles = (0..4).map(|m| Vector::new(0.002, -0.0015) * ((i + m) as f64).sin()).collect();
+            edge.bubbles = (0..4).map(|m| Vector::new(0.001, -0.00075) * ((i + m) as f64).sin()).collect();
         }
         (boundary, mesh)
     }
