@@ -174,6 +174,10 @@ pub const SAME_MOMENTS: f64 = 1e-6;
 /// hundred times as much, the next steps would go on; and a thousandth of an edge decides nothing. 2^-10.
 pub const DECISION_GRID: f64 = 1.0 / 1024.0;
 
+/// The same while a whole mesh is optimised: thousands of positions in hundreds of steps, each of which may fall on
+/// the other side. 2^-8.
+pub const WHOLE_GRID: f64 = 1.0 / 256.0;
+
 /// The same for the mesh that is kept. 2^-18.
 pub const FINAL_GRID: f64 = 1.0 / 262_144.0;
 

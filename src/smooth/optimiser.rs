@@ -12,7 +12,7 @@ use super::straightness::Straightness;
 use super::untangle::untangle;
 use crate::domain::Boundary;
 use crate::mesh::{BoundaryError, BoundaryTolerance, QuadMesh};
-use crate::numerics::tolerances::{DECISION_GRID, FINAL_GRID};
+use crate::numerics::tolerances::{DECISION_GRID, FINAL_GRID, WHOLE_GRID};
 
 /// How much work an optimisation may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -161,7 +161,7 @@ impl Effort {
                 untangle_steps: 50,
                 untangle_decrease: 0.1,
                 patient: false,
-                grid: if self == Effort::Final { FINAL_GRID } else { DECISION_GRID },
+                grid: if self == Effort::Final { FINAL_GRID } else { WHOLE_GRID },
             },
         }
     }
