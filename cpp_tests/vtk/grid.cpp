@@ -205,11 +205,11 @@ void check(const Example& example, const std::string& folder) {
   CHECK(differ <= rounding && from_file <= rounding && from_memory <= rounding);
   // Straight sides stand off the curved ones' directions in proportion to their length, by up to 7 per cent at
   // 32 x 32 pieces where curvature is large. That first-order part is taken off by Richardson's extrapolation from
-  // 16 x 16 pieces; what is left has to agree, and the first order is checked with 128 x 128.
+  // 64 x 64 pieces; what is left has to agree, and the first order is checked with 128 x 128.
   const std::vector<double> ours = mesh.quality(QUADREL_MEASURE_SCALED_JACOBIAN);
-  const std::vector<double> sixteen = verdict(mesh, 16), pieces = verdict(mesh, 32);
+  const std::vector<double> pieces = verdict(mesh, 32), finer = verdict(mesh, 64);
   std::vector<double> extrapolated(ours.size());
-  for (std::size_t e = 0; e < ours.size(); ++e) extrapolated[e] = 2 * pieces[e] - sixteen[e];
+  for (std::size_t e = 0; e < ours.size(); ++e) extrapolated[e] = 2 * finer[e] - pieces[e];
   const double raw = apart(pieces, ours), coarse = apart(extrapolated, ours), fine = apart(verdict(mesh, 128), ours);
   std::printf("%s, order %d: %zu elements; file and memory differ by %.1e, from the mesh by %.1e and %.1e; Verdict's scaled Jacobian on 32 x 32 pieces by %.2f %%, extrapolated %.2f %%, on 128 x 128 %.2f %%\n",
               example.file, example.order, mesh.element_count(), differ, from_file, from_memory, 100 * raw, 100 * coarse, 100 * fine);
