@@ -3,7 +3,7 @@
 //! Nodes are equispaced in Gmsh, so the mesh's Gauss-Lobatto nodes are interpolated anew; that
 //! changes the curves by rounding only. A node that elements share is written once. The file has the
 //! topology of the domain: one surface, one curve for each run of boundary edges of one name along a
-//! loop ([`runs`]), and a point where two such runs meet. Physical groups: the surface, named
+//! loop (`runs`), and a point where two such runs meet. Physical groups: the surface, named
 //! `domain`, with tag 1, and the curves of each boundary, with the boundary's name and its number
 //! from 1 as tag. Elements: one line for each boundary edge, the domain to its left, and the quadrilaterals.
 //!
