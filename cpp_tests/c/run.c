@@ -188,6 +188,20 @@ static void stages_of_a_run(void) {
     quadrel_domain_free(plate);
 }
 
+/* A tolerance below rounding is refused, with a place on the boundary. */
+static void tolerance_below_rounding(void) {
+    quadrel_domain *plate = new_plate();
+    quadrel_options *o = quadrel_options_new();
+    quadrel_mesh *mesh = NULL;
+    double at[2] = {0, 0};
+    OK(quadrel_options_set_relative_tolerance(o, 1e-18, QUADREL_NORM_L2));
+    CHECK_STATUS(quadrel_generate(plate, o, NULL, &mesh), QUADREL_ERROR_TOLERANCE);
+    CHECK(!mesh && strstr(quadrel_last_error_message(), "tolerance"));
+    CHECK(quadrel_last_error_location(at) && fabs(at[0]) <= 2 && fabs(at[1]) <= 2);
+    quadrel_options_free(o);
+    quadrel_domain_free(plate);
+}
+
 static void no_stages(void) {
     CHECK(quadrel_stages_reached(NULL) == QUADREL_STAGE_NONE && quadrel_stages_seconds(NULL, 1) == 0);
     CHECK(!quadrel_stages_statistics_json(NULL) && !quadrel_stages_base_vertex_count(NULL));
@@ -249,6 +263,7 @@ int main(int argc, char **argv) {
     options_out_of_range();
     options_do_something();
     stages_of_a_run();
+    tolerance_below_rounding();
     no_stages();
     every_segment();
     if (argc > 1) domains_from_files(argv[1]);

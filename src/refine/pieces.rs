@@ -119,7 +119,8 @@ pub(super) fn fewest(chain: &Chain, error: &BoundaryError, level: f64) -> Result
         at: chain.point(0.0),
     };
     if level < LEAST_TOLERANCE {
-        return Err(failed());
+        // Whatever an edge's own error is measured as, rounding is more.
+        return Err(Error::Tolerance { error: LEAST_TOLERANCE, tolerance: level, at: chain.point(0.0) });
     }
     let from = |start: f64| greedy(chain, error, start, start + chain.length, level, MOST_PIECES);
     if chain.ends.is_some() {
