@@ -39,3 +39,11 @@ fn a_singularity_before_a_sharp_tip_becomes_the_tip_s_quad() {
     let (elements, _) = mesh("icons/mdi/flag-variant-minus-outline-1.svg");
     assert!(elements <= 40, "{elements} elements");
 }
+
+/// Two corners a thousandth of the ring's width apart. The region that winds around the ring was cut near its end by
+/// a curve between its two borders, half way to the far side of the hole.
+#[test]
+fn a_cut_of_a_ring_keeps_to_the_near_border() {
+    let (elements, _) = mesh("icons/bootstrap/sign-turn-slight-right-1.svg");
+    assert!(elements <= 400, "{elements} elements");
+}

@@ -204,7 +204,8 @@ impl BlockLayout {
                 })
                 .collect()
         };
-        let curves = [0.5, 0.35, 0.65, 0.2, 0.8].map(curve);
+        // Close to one side where the other lies far around a hole.
+        let curves = [0.5, 0.35, 0.65, 0.2, 0.8, 0.1, 0.9, 0.05, 0.95, 0.02, 0.98, 0.01, 0.99].map(curve);
         curves.iter().find(|c| !polyline::leaves(c, &polygon)).unwrap_or(&curves[0]).clone()
     }
 
