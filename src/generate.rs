@@ -5,6 +5,7 @@
 //! interpolation meets the tolerance.
 
 mod blocks;
+mod fewer_elements;
 mod rounds;
 mod watch;
 

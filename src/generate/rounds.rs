@@ -1,5 +1,6 @@
 //! Steps 7 to 9: subdivide, smooth, coarsen; repeat until every boundary edge meets the tolerance.
 
+use super::fewer_elements::fewer_elements;
 use super::watch::Watch;
 use crate::base_mesh::ElementSize;
 use crate::domain::{Boundary, BoundaryPoint, Place};
@@ -10,7 +11,7 @@ use crate::numerics::tolerances::{OFF_POWERS, START_GRID};
 use crate::numerics::Point;
 use crate::options::{Options, Subdivision};
 use crate::progress::Stage;
-use crate::refine::{self, Limits, SizeLimit};
+use crate::refine::{self, SizeLimit};
 use crate::smooth::{Aim, Effort, Optimiser};
 use crate::stages::{Round, Stages};
 use std::collections::HashMap;
@@ -29,7 +30,7 @@ const WORTH: f64 = 0.7;
 const AMPLE: f64 = 1.05;
 /// Sizes in those that the caller's function allows above which elements are divided once more after smoothing,
 /// and after coarsening.
-const TOO_LARGE: f64 = 1.1;
+pub(super) const TOO_LARGE: f64 = 1.1;
 /// Most elements, as a multiple of the first round's, before another layout is tried.
 const MOST_GROWTH: usize = 3;
 
@@ -123,29 +124,7 @@ pub(super) fn refine_and_smooth(
         return Err(Error::InvalidElement { jacobian: quality.min_scaled_jacobian, at });
     }
     if coarsens && watch.work <= MOST_WORK {
-        let limits = Limits { sizes: limit, ..Limits::new(floor) };
-        let progress = watch.coarsening();
-        mesh = watch
-            .run(stages, Stage::Refine, |_| refine::coarsen(mesh, boundary, &optimiser, limits, &progress))?;
-        note(stages, &optimiser, &mesh, "coarsen");
-        let mut before = optimiser.quality(&mesh);
-        if before.min_scaled_jacobian < floor {
-            watch.work += watch.run(stages, Stage::Smooth, |_| Ok(optimiser.lift(&mut mesh, floor)))?;
-            note(stages, &optimiser, &mesh, "lift");
-            before = optimiser.quality(&mesh);
-        }
-        // Kept only if nothing that holds is lost.
-        let mut smoother = mesh.clone();
-        watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut smoother, None, Effort::Final)))?;
-        let after = optimiser.quality(&smoother);
-        if after.valid()
-            && after.error_ratio <= before.error_ratio.max(1.0)
-            && after.min_scaled_jacobian >= before.min_scaled_jacobian
-            && (!too_large(&smoother).contains(&true) || too_large(&mesh).contains(&true))
-        {
-            mesh = smoother;
-            note(stages, &optimiser, &mesh, "smooth");
-        }
+        mesh = fewer_elements(mesh, &optimiser, floor, limit, watch, stages)?;
     }
     // Parts of valid elements are valid, parts of edges nearer to the curve, and a solver's error falls with their
     // size as the order promises: nothing is smoothed any more.
@@ -244,7 +223,7 @@ fn start(boundary: &Boundary, layout: &QuadLayout) -> Result<QuadMesh> {
 }
 
 /// Notes what a round left.
-fn note(stages: &mut Stages, optimiser: &Optimiser, mesh: &QuadMesh, action: &'static str) {
+pub(super) fn note(stages: &mut Stages, optimiser: &Optimiser, mesh: &QuadMesh, action: &'static str) {
     let quality = optimiser.quality(mesh);
     stages.quad_mesh = Some(mesh.clone());
     stages.rounds.push(Round {
