@@ -27,8 +27,9 @@ pub(super) fn lift(
             }
             let saved = Saved::of(mesh, &part);
             let before = optimiser.quality_of(mesh, Some(&part));
-            work += optimiser.optimise(mesh, Some(&part), effort).work;
-            let after = optimiser.quality_of(mesh, Some(&part));
+            let outcome = optimiser.optimise(mesh, Some(&part), effort);
+            work += outcome.work;
+            let after = outcome.quality;
             if !after.valid()
                 || after.min_scaled_jacobian < before.min_scaled_jacobian
                 || after.error_ratio > before.error_ratio.max(1.0)

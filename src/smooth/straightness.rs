@@ -29,15 +29,10 @@ impl Straightness<'_> {
 
     /// Whether an edge is straight and stays so.
     pub fn holds(&self, mesh: &QuadMesh, edge: u32) -> bool {
-        let edge = &mesh.edges[edge as usize];
-        match edge.span {
-            Some(span) => self.chains[span.chain as usize],
-            None => {
-                let bent = edge.bubbles.iter().any(|b| *b != Vector::zeros());
-                let beside = |q: &u32| *q != NONE && self.beside_curve(mesh, *q);
-                !(self.everywhere || bent || edge.quads.iter().any(beside))
-            }
-        }
+        let own = &mesh.edges[edge as usize];
+        let beside = |q: &u32| *q != NONE && self.beside_curve(mesh, *q);
+        let may_bend = || own.span.is_none() && (self.everywhere || own.quads.iter().any(beside));
+        self.holds_now(mesh, edge) && !may_bend()
     }
 
     /// Whether a quad has a side or a corner on a curved boundary.
