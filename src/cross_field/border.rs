@@ -38,6 +38,10 @@ pub(super) struct Border {
     pub quads: Vec<u8>,
     /// Direction of the outgoing border edge at border vertices, else 0.
     pub direction: Vec<f64>,
+    /// Lengths of the outgoing and the incoming border edge at border vertices, else 0.
+    lengths: Vec<[f64; 2]>,
+    /// Border vertices where two segments meet.
+    corner: Vec<bool>,
     /// For each triangle and corner at a border vertex the polar angles at which its wedge starts
     /// (on the triangle's edge that leaves the corner) and ends.
     pub wedges: Vec<[[f64; 2]; 3]>,
@@ -50,6 +54,8 @@ impl Border {
             angle: vec![0.0; n],
             quads: vec![0; n],
             direction: vec![0.0; n],
+            lengths: vec![[0.0; 2]; n],
+            corner: vec![false; n],
             wedges: vec![[[0.0; 2]; 3]; mesh.triangles.len()],
         };
         for (t, corners) in mesh.triangles.iter().enumerate() {
@@ -59,6 +65,7 @@ impl Border {
                     Place::Junction(j) => quads_at_corner(boundary.junctions[j as usize].angle),
                     _ => 2,
                 };
+                border.corner[v as usize] = matches!(mesh.vertices[v as usize].place, Place::Junction(_));
                 border.turn_about(mesh, t, i)?;
             }
         }
@@ -102,6 +109,7 @@ impl Border {
                 [(i + 1) % 3, (i + 2) % 3].map(|k| mesh.vertices[mesh.triangles[t][k] as usize].point - at);
             if phi == 0.0 {
                 self.direction[v] = a.y.atan2(a.x);
+                self.lengths[v][0] = a.norm();
             }
             let end = phi + cross(a, b).atan2(a.dot(&b));
             self.wedges[t][i] = [phi, end];
@@ -109,6 +117,7 @@ impl Border {
             match mesh.neighbors[t][(i + 2) % 3] {
                 NONE => {
                     self.angle[v] = phi;
+                    self.lengths[v][1] = b.norm();
                     return Ok(());
                 }
                 next => {
@@ -143,10 +152,30 @@ impl Border {
         (wedge[0] - wedge[1]) * self.rate(v as usize)
     }
 
-    /// (cos 4θ, sin 4θ) in the middle of the arc that border vertex `v` is blown up to.
-    pub fn middle(&self, v: u32) -> [f64; 2] {
-        let four = 4.0 * self.cross_at(v, 0.5 * self.angle[v as usize]);
+    fn u_at(&self, v: u32, share: f64) -> [f64; 2] {
+        let four = 4.0 * self.cross_at(v, share * self.angle[v as usize]);
         [four.cos(), four.sin()]
+    }
+
+    /// u at border vertex `v`, of length 1: that of the curve's tangent where smooth, that in the middle of
+    /// the arc at corners.
+    pub fn middle(&self, v: u32) -> [f64; 2] {
+        let [leaving, arriving] = self.lengths[v as usize];
+        // Of two chords the shorter is closer to the tangent, in proportion.
+        let share = if self.corner[v as usize] { 0.5 } else { leaving / (leaving + arriving) };
+        self.u_at(v, share)
+    }
+
+    /// The value of the harmonic u at border vertex `v`. At a corner, where u jumps from one side's value to
+    /// the other's, it is such that linear interpolation along the two edges has the jump's mean: any other
+    /// value shifts zeros of u by as much as an edge is long.
+    pub fn mean(&self, v: u32) -> [f64; 2] {
+        if !self.corner[v as usize] {
+            return self.middle(v);
+        }
+        let [leaving, arriving] = self.lengths[v as usize];
+        let [a, b] = [0.0, 1.0].map(|share| self.u_at(v, share));
+        [0, 1].map(|k| (leaving * a[k] + arriving * b[k]) / (leaving + arriving))
     }
 }
 

@@ -123,7 +123,7 @@ pub(super) fn solve(
     let mut inner = Vec::new();
     for v in 0..mesh.vertices.len() as u32 {
         if border.holds(v) {
-            u[v as usize] = border.middle(v);
+            u[v as usize] = border.mean(v);
         } else if let Some(held) = held[v as usize] {
             u[v as usize] = [(4.0 * held.cross).cos(), (4.0 * held.cross).sin()];
         } else {
@@ -135,6 +135,9 @@ pub(super) fn solve(
     System::new(&elements, 0.0, &unknown, &inner)?.advance(&mut u)?;
     if method == FieldMethod::Diffused {
         renormalise(&mut u, &inner);
+        for v in (0..mesh.vertices.len() as u32).filter(|&v| border.holds(v)) {
+            u[v as usize] = border.middle(v);
+        }
         // A step longer than a thin part is wide would only bring back the harmonic field there.
         let thickness = thickness(mesh, border);
         let time = |t: &[u32; 3]| {
