@@ -47,3 +47,15 @@ fn a_cut_of_a_ring_keeps_to_the_near_border() {
     let (elements, _) = mesh("icons/bootstrap/sign-turn-slight-right-1.svg");
     assert!(elements <= 400, "{elements} elements");
 }
+
+/// Junctions on the two sides of a stroke were joined by lines from one to another several widths away, which nothing
+/// could straighten afterwards: a scaled Jacobian of 0.41.
+#[test]
+fn junctions_far_apart_on_two_sides_of_a_stroke_are_not_joined() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/domains/glyphs/NotoSansJavanese/ua98e.svg");
+    let domain = input::read(&path, None).unwrap().domain;
+    let mesh = generate(&domain, &Options::default(), &mut Stages::default()).unwrap();
+    let least = mesh.scaled_jacobian.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(least > 0.7, "scaled Jacobian {least}");
+    assert!(mesh.elements.len() <= 40, "{} elements", mesh.elements.len());
+}

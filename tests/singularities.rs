@@ -3,7 +3,7 @@
 mod shapes;
 
 use quadrel::base_mesh::{triangulate, usual_size, Request};
-use quadrel::cross_field::solve;
+use quadrel::cross_field::{solve, solve_with_tips, Tips};
 use quadrel::domain::Boundary;
 use quadrel::options::FieldMethod;
 use quadrel::singularities::{check, find, gate, resolve, Resolved};
@@ -156,4 +156,26 @@ fn singularities_settle_where_u_jumps() {
     let finest = nearest(0.15);
     let wanders = [1.0, 0.6, 0.4, 0.25].map(|share| (nearest(share) - finest).norm() / usual);
     assert!(wanders.iter().all(|&w| w < 0.4), "{wanders:?}");
+}
+
+#[test]
+fn on_a_second_try_corners_near_a_tie_take_up_the_singularities_beside_them() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/domains/icons/mdi/atv.svg");
+    let b = Boundary::new(&quadrel::input::read(&path, None).unwrap().domain).unwrap();
+    let mesh = triangulate(&b, &Request::default()).unwrap();
+    let [first, second] = [Tips::Balanced, Tips::OneQuad].map(|tips| {
+        let field = solve_with_tips(&mesh, &b, FieldMethod::Diffused, tips).unwrap();
+        let (singularities, corners) = find(&mesh, &b, &field).unwrap();
+        check(&mesh, &singularities, &corners).unwrap();
+        (singularities.len(), corners)
+    });
+    assert!(second.0 < first.0, "{} and {}", first.0, second.0);
+    // Each of them is a quad more or less at a corner whose quads get angles of 60° to 120°.
+    let changed: Vec<_> = first.1.iter().zip(&second.1).filter(|(a, b)| a.quads != b.quads).collect();
+    assert_eq!(changed.len(), first.0 - second.0);
+    for (before, after) in changed {
+        assert_eq!((before.junction, before.quads.abs_diff(after.quads)), (after.junction, 1));
+        let share = (after.angle / f64::from(after.quads)).to_degrees();
+        assert!((59.9..120.1).contains(&share), "{share} degrees");
+    }
 }

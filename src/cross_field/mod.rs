@@ -7,12 +7,14 @@
 //! The border polygon's edges are streamlines: the cross on a border edge is the edge's direction.
 //! At a border vertex of interior angle θ that carries n quads the cross on the ray at polar angle φ
 //! from the outgoing border edge (direction a₀) is a₀ + φ (θ − n π/2) / θ: the vertex is blown
-//! up to an arc. n is 2 at every smooth border vertex.
+//! up to an arc. n is 2 at every smooth border vertex. Where a singularity comes to lie at a corner of
+//! about 135°, 225° or 315°, the two together are that corner with one quad more or less (`absorption`).
 //!
 //! *Method:* linear finite elements for u, first harmonic (Kowalski, Ledoux, Frey 2013), then a few steps
 //! of diffusion and renormalisation (Merriman, Bence, Osher 1992; Viertel, Osting 2019), which keep
 //! singularities of equal sign apart ([`solve`]).
 
+mod absorption;
 mod border;
 mod check;
 mod diffusion;
@@ -20,12 +22,17 @@ mod thickness;
 mod tips;
 mod turning;
 
+use absorption::absorb;
+use border::Border;
 pub use border::{quads_at_corner, Tips};
 
 use crate::base_mesh::Triangulation;
 use crate::domain::Boundary;
 use crate::error::Result;
 use crate::options::FieldMethod;
+
+/// Most times that corners take up singularities and the field is solved again.
+const ABSORPTIONS: usize = 3;
 
 /// The angle of one arm of the cross around a triangle, lifted to the real line.
 ///
@@ -81,9 +88,19 @@ pub fn solve_with_tips(
     method: FieldMethod,
     tips: Tips,
 ) -> Result<CrossField> {
-    let border = border::Border::new(mesh, boundary, tips)?;
-    let held = tips::held(mesh, boundary, &border);
-    let u = diffusion::solve(mesh, &border, &held, method)?;
-    let triangles = turning::triangle_crosses(mesh, &border, &held, &u)?;
-    Ok(CrossField { u, triangles, quads_at: border.quads, border_angle: border.angle })
+    let mut border = Border::new(mesh, boundary, tips)?;
+    let thickness = thickness::thickness(mesh, &border);
+    let mut rounds = 0;
+    loop {
+        let held = tips::held(mesh, boundary, &border);
+        let u = diffusion::solve(mesh, &border, &held, &thickness, method)?;
+        let triangles = turning::triangle_crosses(mesh, &border, &held, &u)?;
+        rounds += 1;
+        let corners_of_triangles_too = tips != Tips::Balanced;
+        if rounds > ABSORPTIONS
+            || !absorb(mesh, boundary, &thickness, &triangles, corners_of_triangles_too, &mut border)
+        {
+            return Ok(CrossField { u, triangles, quads_at: border.quads, border_angle: border.angle });
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use super::extract::{extract, Extraction};
 use super::lengths::LengthProgram;
 use super::repair::PATTERN;
+use super::skew;
 use super::targets::{LengthTargets, Targets};
 use super::{polyline, BlockLayout, QuadLayout};
 use crate::domain::Boundary;
@@ -14,6 +15,8 @@ use std::collections::BTreeSet;
 const ROUNDS: usize = 200;
 /// Most times that a conforming result is improved further.
 const POLISHES: usize = 2;
+/// Most times that lines aslant are asked to be less so.
+const STRAIGHTENINGS: usize = 4;
 /// Most regions relaxed to a 3-5 pair.
 const RELAXATIONS: usize = 64;
 
@@ -49,7 +52,7 @@ pub fn conform(layout: &BlockLayout, boundary: &Boundary, targets: &Targets) -> 
         let wanted = LengthTargets::new(&work, boundary, targets);
         let blamed = match settle(&work, boundary, targets, &wanted, &mut rounds)? {
             Ok(settled) => {
-                let Settled { layout, lengths, cost } = settled;
+                let Settled { layout, lengths, cost, .. } = settled;
                 return Ok(Conforming { layout, repaired: work, lengths, fallback, cost, rounds, relaxed });
             }
             Err(blamed) => blamed,
@@ -67,7 +70,15 @@ pub fn conform(layout: &BlockLayout, boundary: &Boundary, targets: &Targets) -> 
 struct Settled {
     layout: QuadLayout,
     lengths: Vec<u32>,
+    /// Demands for lines that are less aslant.
+    aslant: usize,
     cost: f64,
+}
+
+impl Settled {
+    fn is_better_than(&self, other: &Settled) -> bool {
+        (self.aslant, self.cost) < (other.aslant, other.cost)
+    }
 }
 
 /// Solves and extracts until no demand is left, then looks for cheaper lengths. The inner `Err` names regions
@@ -82,7 +93,7 @@ fn settle(
     let mut program = LengthProgram::new(work, boundary, wanted);
     let mut made: BTreeSet<(Vec<u32>, u32)> = BTreeSet::new();
     let mut best: Option<Settled> = None;
-    let mut polishes = 0;
+    let (mut polishes, mut straightenings) = (0, 0);
     loop {
         let lengths = match (program.solve(), best.take()) {
             (Ok(()), b) => {
@@ -96,15 +107,22 @@ fn settle(
         let demands = match extract(work, &lengths, boundary, targets.size) {
             Ok(Extraction::Done(layout)) => {
                 let cost = program.flow.cost();
-                if best.as_ref().is_none_or(|b| cost < b.cost) {
-                    best = Some(Settled { layout, lengths: lengths.arcs, cost });
+                let straighter = skew::aslant(work, &lengths);
+                let settled = Settled { layout, lengths: lengths.arcs, aslant: straighter.len(), cost };
+                if best.as_ref().is_none_or(|best| settled.is_better_than(best)) {
+                    best = Some(settled);
                 }
                 polishes += 1;
                 program.flow.polish();
                 if program.flow.cost() < cost && polishes <= POLISHES {
                     continue;
                 }
-                Vec::new()
+                straightenings += 1;
+                if straightenings <= STRAIGHTENINGS {
+                    straighter
+                } else {
+                    Vec::new()
+                }
             }
             Ok(Extraction::Demands(demands)) => demands,
             Err((reason, at)) if best.is_none() => return Err(refused(reason, at)),

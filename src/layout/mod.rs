@@ -20,6 +20,7 @@ mod identify;
 pub mod lengths;
 mod polyline;
 mod repair;
+mod skew;
 mod targets;
 
 pub use conform::{conform, Conforming};
