@@ -8,13 +8,13 @@ use super::border::Border;
 use super::TriangleCross;
 use crate::base_mesh::Triangulation;
 use crate::domain::{Boundary, Place};
-use crate::numerics::tolerances::{ABSORBING_ANGLES, ABSORBING_REACH, CORNER_DOUBT};
-use crate::numerics::{Point, Vector};
+use crate::numerics::tolerances::{ABSORBING_ANGLES, ABSORBING_REACH, CORNER_DOUBT, CROWDED_SIDE};
 use std::f64::consts::FRAC_PI_2;
 
 /// Changes the number of quads at corners of `border` that take up a singularity: one that is close to the corner
-/// for the domain's size there, and with `in_triangles_too` any in a triangle at the corner, for a second try when
-/// lines found no way. Whether there was one.
+/// for the domain's size there, and one in a triangle at a corner whose shorter side is no longer than a few such
+/// triangles; with `in_triangles_too` at every corner, for a second try when lines found no way. Whether there was
+/// one.
 pub(super) fn absorb(
     mesh: &Triangulation,
     boundary: &Boundary,
@@ -27,14 +27,16 @@ pub(super) fn absorb(
     let mut changed = Vec::new();
     for (t, own) in triangles.iter().enumerate().filter(|(_, own)| own.winding.abs() == 1) {
         let corners = mesh.triangles[t];
-        let sum = corners.iter().map(|&v| mesh.vertices[v as usize].point.coords).sum::<Vector>();
-        let centre = Point::from(sum / 3.0);
+        let points = corners.map(|v| mesh.vertices[v as usize].point);
+        let centre = nalgebra::center(&nalgebra::center(&points[0], &points[1]), &points[2]);
+        let longest = (0..3).map(|i| (points[(i + 1) % 3] - points[i]).norm()).fold(0.0, f64::max);
         let nearest = doubtful
             .iter()
             .filter(|corner| corner.winding == own.winding)
             .map(|corner| (corner, (mesh.vertices[corner.vertex as usize].point - centre).norm()))
             .filter(|(corner, distance)| {
-                *distance < corner.reach || in_triangles_too && corners.contains(&corner.vertex)
+                let crowded = in_triangles_too || corner.side < CROWDED_SIDE * longest;
+                *distance < corner.reach || crowded && corners.contains(&corner.vertex)
             })
             .min_by(|a, b| a.1.total_cmp(&b.1));
         let Some((corner, _)) = nearest else { continue };
@@ -52,6 +54,8 @@ struct Doubtful {
     vertex: u32,
     winding: i32,
     reach: f64,
+    /// Length of the corner's shorter side.
+    side: f64,
 }
 
 /// The corners near a tie: not those whose quads would get much worse angles.
@@ -62,7 +66,8 @@ fn doubtful(mesh: &Triangulation, boundary: &Boundary, thickness: &[f64], border
         let Place::Junction(j) = mesh.vertices[v].place else { continue };
         let junction = &boundary.junctions[j as usize];
         let sides = [junction.chain_in, junction.chain_out].map(|c| boundary.chains[c as usize].length);
-        let reach = ABSORBING_REACH * thickness[v].min(sides[0]).min(sides[1]);
+        let side = sides[0].min(sides[1]);
+        let reach = ABSORBING_REACH * thickness[v].min(side);
         let (angle, quads) = (border.angle[v], i32::from(border.quads[v]));
         for winding in [-1, 1] {
             let after = quads - winding;
@@ -73,7 +78,7 @@ fn doubtful(mesh: &Triangulation, boundary: &Boundary, thickness: &[f64], border
                 && least <= angle
                 && angle <= most
             {
-                found.push(Doubtful { vertex, winding, reach });
+                found.push(Doubtful { vertex, winding, reach, side });
             }
         }
     }
