@@ -119,7 +119,7 @@ fn symmetric_mesh(
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<Option<HighOrderMesh>> {
-    let before = stages.quad_mesh.clone();
+    let (before, rounds) = (stages.quad_mesh.clone(), stages.rounds.len());
     let (found, asymmetry) = symmetric::symmetrise(setting, boundary, group, direct, watch, stages)?;
     symmetric::report(stages, group, &found.elements, asymmetry);
     if found.elements.len() < 2 {
@@ -138,7 +138,7 @@ fn symmetric_mesh(
         Err(error @ (Error::Cancelled | Error::Callback { .. })) => Err(error),
         Err(_) => {
             stages.quad_mesh = before;
-            stages.rounds.pop();
+            stages.rounds.truncate(rounds);
             symmetric::report(stages, group, &[0], Some(Asymmetry::Quality));
             Ok(None)
         }

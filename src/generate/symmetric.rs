@@ -129,13 +129,13 @@ pub(super) fn symmetrise(
         spent += part.spent;
         let welded = sector.weld(&part.mesh, boundary, group).ok();
         let candidate = welded.and_then(|whole| averaged(&whole, boundary, group));
-        asymmetry = better(&mut best, candidate, &optimiser, group, &bar)?.unwrap_or(asymmetry);
+        asymmetry = better(&mut best, candidate, &optimiser, group, &bar).unwrap_or(asymmetry);
     }
     // Coarsening removes one strip after the other; what was there before may have been more symmetric.
     let few = direct.fine.quads.len() <= MOST_FINE;
     if best.elements.len() < group.elements.len() && few {
         let candidate = averaged(&direct.fine, boundary, group);
-        asymmetry = better(&mut best, candidate, &optimiser, group, &bar)?.unwrap_or(asymmetry);
+        asymmetry = better(&mut best, candidate, &optimiser, group, &bar).unwrap_or(asymmetry);
     }
     if best.elements.len() > 1 {
         note(stages, &optimiser, &best.mesh, "symmetrise");
@@ -180,20 +180,18 @@ fn better(
     optimiser: &Optimiser,
     group: &Group,
     bar: &Bar,
-) -> Result<Option<Asymmetry>> {
-    let Some(candidate) = candidate.filter(|c| c.elements.len() > best.elements.len()) else {
-        return Ok(None);
-    };
+) -> Option<Asymmetry> {
+    let candidate = candidate.filter(|c| c.elements.len() > best.elements.len())?;
     let candidate = lifted(candidate, optimiser, group, bar);
     if let Some(objection) = bar.shape_objection(&optimiser.quality(&candidate.mesh)) {
-        return Ok(Some(objection));
+        return Some(objection);
     }
-    let candidate = fewer_strips(candidate, optimiser, group, bar)?;
+    let candidate = fewer_strips(candidate, optimiser, group, bar);
     let objection = bar.objection(&optimiser.quality(&candidate.mesh));
     if objection.is_none() {
         *best = candidate;
     }
-    Ok(objection)
+    objection
 }
 
 /// `mesh` averaged over the symmetries that its connectivity has; `None` if there are none.
@@ -221,9 +219,11 @@ fn lifted(found: Symmetrised, optimiser: &Optimiser, group: &Group, bar: &Bar) -
 
 /// `found` with one strip in the place of two that are each other's images, where it holds as well as before; and, as
 /// long as it has more elements than the direct mesh, without any strip and its images.
-fn fewer_strips(found: Symmetrised, optimiser: &Optimiser, group: &Group, bar: &Bar) -> Result<Symmetrised> {
+fn fewer_strips(found: Symmetrised, optimiser: &Optimiser, group: &Group, bar: &Bar) -> Symmetrised {
     let boundary = optimiser.boundary();
-    let removal = StripRemoval::new(boundary, optimiser, Limits::new(bar.scaled_jacobian))?;
+    let Ok(removal) = StripRemoval::new(boundary, optimiser, Limits::new(bar.scaled_jacobian)) else {
+        return found;
+    };
     let mut best = found;
     let mut trials = 0;
     'again: loop {
@@ -243,6 +243,6 @@ fn fewer_strips(found: Symmetrised, optimiser: &Optimiser, group: &Group, bar: &
                 continue 'again;
             }
         }
-        return Ok(best);
+        return best;
     }
 }
