@@ -301,6 +301,9 @@ typedef int32_t quadrel_field;
 /** How boundary edges are divided until the tolerance holds. */
 typedef int32_t quadrel_subdivision;
 
+/** What becomes of a domain's mirrors and rotations. */
+typedef int32_t quadrel_symmetry;
+
 /** (integral of |e|^2 ds)^(1/2); unit length^(3/2) */
 #define QUADREL_NORM_L2 0
 /** (integral of |e|^2 + L^2 |e'|^2 ds)^(1/2), L the edge's length; unit length^(3/2) */
@@ -315,6 +318,10 @@ typedef int32_t quadrel_subdivision;
 #define QUADREL_SUBDIVISION_EQUAL_ERROR 0
 /** at the middle; nothing is coarsened afterwards */
 #define QUADREL_SUBDIVISION_HALVING 1
+/** they count for nothing */
+#define QUADREL_SYMMETRY_IGNORED 0
+/** the mesh has them, to rounding, if such a mesh is found that is not clearly worse */
+#define QUADREL_SYMMETRY_KEPT 1
 
 /** Options with their defaults. */
 quadrel_options *quadrel_options_new(void);
@@ -344,6 +351,13 @@ quadrel_status quadrel_options_set_field(quadrel_options *options, quadrel_field
 
 /** How boundary edges are divided, a QUADREL_SUBDIVISION number; default QUADREL_SUBDIVISION_EQUAL_ERROR. */
 quadrel_status quadrel_options_set_subdivision(quadrel_options *options, quadrel_subdivision subdivision);
+
+/**
+ * What becomes of the domain's mirrors and rotations; default QUADREL_SYMMETRY_KEPT. A size function or a base
+ * triangulation, which know nothing of them, switch it off. The statistics tell which the domain and the mesh have.
+ */
+quadrel_status quadrel_options_set_symmetry(quadrel_options *options,
+                                            quadrel_symmetry symmetry);
 
 /** Largest wanted size of the elements: the longer of the mean lengths of opposite sides; default 0: no limit. */
 quadrel_status quadrel_options_set_max_element_size(quadrel_options *options, double size);
@@ -560,7 +574,8 @@ const char *quadrel_mesh_boundary_name(const quadrel_mesh *mesh, int32_t boundar
  * The statistics of the run that made the mesh, as a JSON object: status, message, place, seconds (by stage,
  * and total), triangles, singularities, separatrices, blocks, elements, order, nodes, irregular (interior,
  * boundary), irregular_expected, scaled_jacobian (min, p1, mean), scaled_jacobian_ceiling, boundary_error
- * (max, loops), fallback, attempts, rounds, warnings. The times are all in it that differs from run to run.
+ * (max, loops), symmetry (domain, mesh: rotations, mirrors each; asymmetry), fallback, attempts, rounds,
+ * warnings. The times are all in it that differs from run to run.
  */
 const char *quadrel_mesh_statistics_json(const quadrel_mesh *mesh);
 

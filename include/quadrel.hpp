@@ -257,6 +257,9 @@ class Options {
   Options& subdivision(Subdivision s) {
     return done(quadrel_options_set_subdivision(get(), static_cast<quadrel_subdivision>(s)));
   }
+  Options& symmetry(bool kept) {
+    return done(quadrel_options_set_symmetry(get(), kept ? QUADREL_SYMMETRY_KEPT : QUADREL_SYMMETRY_IGNORED));
+  }
   Options& max_element_size(double h) { return done(quadrel_options_set_max_element_size(get(), h)); }
   Options& size(Size at) {
     auto* user = new Size(std::move(at));

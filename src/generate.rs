@@ -7,15 +7,18 @@
 mod blocks;
 mod fewer_elements;
 mod rounds;
+mod symmetric;
 mod watch;
 
 use crate::base_mesh::{self, Triangulation};
 use crate::domain::{Boundary, Domain};
 use crate::error::{Error, Result};
-use crate::mesh::{BoundaryTolerance, HighOrderMesh, QuadMesh};
+use crate::mesh::{BoundaryTolerance, DomainCurve, HighOrderMesh};
 use crate::options::Options;
 use crate::progress::Stage;
-use crate::stages::Stages;
+use crate::stages::{Asymmetry, Stages};
+use crate::symmetry::{Group, SymmetricCurve};
+use rounds::Refined;
 use watch::Watch;
 
 /// Base meshes tried, each finer than the one before, until blocks and elements come out right.
@@ -57,6 +60,9 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
     })?;
     stages.boundary = Some(boundary.clone());
     let tolerance = BoundaryTolerance::new(options, &boundary);
+    let group = watch.run(stages, Stage::Domain, |stages| {
+        symmetric::wanted(&boundary, &DomainCurve { boundary: &boundary, domain }, options, stages)
+    })?;
 
     let mut given = None;
     if let Some(own) = &options.base_triangulation {
@@ -75,7 +81,16 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
             .map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)));
         // The proof: curved elements of order N with positive Jacobians, on the exact curves.
         let result = elements.and_then(|elements| {
-            watch.run(stages, Stage::Mesh, |_| HighOrderMesh::new(&elements, &boundary, domain, &tolerance))
+            if !group.is_trivial() {
+                let setting = symmetric::Setting { options, tolerance: &tolerance };
+                let made = symmetric_mesh(setting, &boundary, domain, &group, &elements, &mut watch, stages)?;
+                if let Some(mesh) = made {
+                    return Ok(mesh);
+                }
+            }
+            watch.run(stages, Stage::Mesh, |_| {
+                HighOrderMesh::new(&elements.mesh, &boundary, domain, &tolerance)
+            })
         });
         match result {
             Ok(mesh) => return Ok(mesh),
@@ -94,6 +109,42 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
     Err(failure.unwrap_or(Error::Cancelled))
 }
 
+/// The mesh with as many symmetries of the domain as one was found for, proven; `None` if the direct one has to do.
+fn symmetric_mesh(
+    setting: symmetric::Setting,
+    boundary: &Boundary,
+    domain: &Domain,
+    group: &Group,
+    direct: &Refined,
+    watch: &mut Watch,
+    stages: &mut Stages,
+) -> Result<Option<HighOrderMesh>> {
+    let (before, rounds) = (stages.quad_mesh.clone(), stages.rounds.len());
+    let (found, asymmetry) = symmetric::symmetrise(setting, boundary, group, direct, watch, stages)?;
+    symmetric::report(stages, group, &found.elements, asymmetry);
+    if found.elements.len() < 2 {
+        return Ok(None);
+    }
+    let curve = SymmetricCurve {
+        exact: &DomainCurve { boundary, domain },
+        boundary,
+        symmetries: found.elements.iter().map(|e| &group.elements[*e]).collect(),
+    };
+    let proven = watch.run(stages, Stage::Mesh, |_| {
+        HighOrderMesh::with_curve(&found.mesh, boundary, &curve, setting.tolerance)
+    });
+    match proven {
+        Ok(mesh) => Ok(Some(mesh)),
+        Err(error @ (Error::Cancelled | Error::Callback { .. })) => Err(error),
+        Err(_) => {
+            stages.quad_mesh = before;
+            stages.rounds.truncate(rounds);
+            symmetric::report(stages, group, &[0], Some(Asymmetry::Quality));
+            Ok(None)
+        }
+    }
+}
+
 fn steps_1_to_9(
     boundary: &Boundary,
     given: Option<&Triangulation>,
@@ -102,7 +153,7 @@ fn steps_1_to_9(
     request: &mut base_mesh::Request,
     watch: &mut Watch,
     stages: &mut Stages,
-) -> Result<QuadMesh> {
+) -> Result<Refined> {
     // Steps 1 to 3: base mesh, cross field, singularities; refined until the index theorem holds.
     let field = blocks::field(boundary, given, options, request, watch, stages)?;
 

@@ -25,7 +25,7 @@
 //! The stages are modules, in running order: [`domain`] (boundary curves as tables in arc length),
 //! [`base_mesh`] (triangles), [`cross_field`], [`singularities`], [`separatrices`], [`layout`] (conforming
 //! blocks), [`refine`] and [`smooth`] (blocks become curved elements that keep the tolerance), [`mesh`]
-//! (order-N elements and the proof that they are valid). [`stages::Stages`] keeps what each left behind;
+//! (order-N elements and the proof that they are valid), [`symmetry`] (symmetric domains get symmetric meshes). [`stages::Stages`] keeps what each left behind;
 //! [`input`] reads files, [`output`] writes them, [`statistics`] counts.
 #![deny(unsafe_code)]
 
@@ -48,6 +48,7 @@ pub mod singularities;
 pub mod smooth;
 pub mod stages;
 pub mod statistics;
+pub mod symmetry;
 
 pub use error::{Error, Result};
 pub use generate::generate;

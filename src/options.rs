@@ -101,6 +101,10 @@ pub struct Options {
     /// that coarsening does not take elements below; where the mesh is below it already, coarsening does not
     /// make it worse.
     pub quality_floor: f64,
+    /// Whether a domain with mirrors or rotations gets a mesh that has them, to rounding, if one is found that is not
+    /// clearly worse. Not with [`element_size`](Self::element_size) or
+    /// [`base_triangulation`](Self::base_triangulation), which know nothing of them.
+    pub symmetry: bool,
     /// Most elements allowed.
     pub max_elements: usize,
     /// Called now and then with the stage and the share done; it can cancel.
@@ -120,6 +124,7 @@ impl Default for Options {
             base_mesh_size: None,
             base_triangulation: None,
             quality_floor: 0.8,
+            symmetry: true,
             max_elements: 1_000_000,
             progress: Progress::default(),
         }

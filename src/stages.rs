@@ -21,10 +21,60 @@ pub struct Round {
     pub boundary_error: f64,
 }
 
+/// How many rotations (the identity included) and mirrors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SymmetryCount {
+    pub rotations: usize,
+    pub mirrors: usize,
+}
+
+impl SymmetryCount {
+    /// How many symmetries in all.
+    pub fn order(&self) -> usize {
+        self.rotations + self.mirrors
+    }
+}
+
+/// Why a mesh lacks symmetries of its domain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Asymmetry {
+    /// No mesh with all of them was found.
+    Connectivity,
+    /// A symmetric mesh had a clearly smaller scaled Jacobian, ...
+    Quality,
+    /// ... clearly more elements, or none that keep to the wanted size, ...
+    Elements,
+    /// ... or did not keep the tolerance.
+    Tolerance,
+}
+
+impl Asymmetry {
+    /// Its name, as in the statistics.
+    pub fn name(self) -> &'static str {
+        match self {
+            Asymmetry::Connectivity => "connectivity",
+            Asymmetry::Quality => "quality",
+            Asymmetry::Elements => "elements",
+            Asymmetry::Tolerance => "tolerance",
+        }
+    }
+}
+
+/// The symmetries of the domain, and those that the mesh has to rounding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SymmetryReport {
+    pub domain: SymmetryCount,
+    pub mesh: SymmetryCount,
+    /// Why those are fewer, if they are.
+    pub asymmetry: Option<Asymmetry>,
+}
+
 /// Results of the stages, in the canonical frame; `None` or empty where generation did not come that far.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Stages {
     pub boundary: Option<Boundary>,
+    /// `None`: not looked for ([`Options::symmetry`](crate::Options::symmetry)).
+    pub symmetry: Option<SymmetryReport>,
     pub triangulation: Option<Triangulation>,
     pub cross_field: Option<CrossField>,
     pub singularities: Vec<Singularity>,
@@ -58,6 +108,7 @@ impl Stages {
     pub(crate) fn begin_attempt(&mut self, attempt: usize) {
         *self = Stages {
             boundary: self.boundary.take(),
+            symmetry: self.symmetry,
             seconds: self.seconds,
             reached: Some(Stage::Domain),
             warnings: std::mem::take(&mut self.warnings),

@@ -8,7 +8,7 @@ use crate::mesh::{irregularity_bound, quads_by_table, scaled_jacobian_ceiling, H
 use crate::numerics::tolerances::JOIN;
 use crate::numerics::{Point, NONE};
 use crate::progress::Stage;
-use crate::stages::{Round, Stages};
+use crate::stages::{Round, Stages, SymmetryReport};
 
 /// A distribution of a quality measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,6 +59,8 @@ pub struct Statistics {
     /// The best scaled Jacobian that the domain allows.
     pub scaled_jacobian_ceiling: Option<f64>,
     pub boundary_error: Option<LoopErrors>,
+    /// The domain's symmetries and the mesh's; `None`: not looked for.
+    pub symmetry: Option<SymmetryReport>,
     /// What repaired the layout: 0 nothing, 1 the paper's rules, 2 a pattern, 3 centroid stars.
     pub fallback: u8,
     /// Base mesh sizes tried.
@@ -93,6 +95,7 @@ impl Statistics {
             scaled_jacobian: mesh.and_then(|m| Distribution::of(&m.scaled_jacobian)),
             scaled_jacobian_ceiling: boundary.map(scaled_jacobian_ceiling),
             boundary_error: mesh.map(LoopErrors::of),
+            symmetry: stages.symmetry,
             fallback: stages.fallback,
             attempts: stages.attempts,
             rounds: stages.rounds.clone(),

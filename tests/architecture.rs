@@ -22,6 +22,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("layout", &["domain", "singularities", "separatrices"]),
     ("mesh", &["domain"]),
     ("smooth", &["domain", "mesh"]),
+    ("symmetry", &["domain", "mesh"]),
     // Coarsening re-optimises round every removal.
     ("refine", &["domain", "mesh", "layout", "smooth"]),
     ("input", &["domain"]),

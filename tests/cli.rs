@@ -195,6 +195,7 @@ fn statistics_have_their_keys_in_order() {
         "scaled_jacobian",
         "scaled_jacobian_ceiling",
         "boundary_error",
+        "symmetry",
         "fallback",
         "attempts",
         "rounds",

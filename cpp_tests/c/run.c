@@ -20,6 +20,7 @@ static void options_out_of_range(void) {
     CHECK_STATUS(quadrel_options_set_relative_tolerance(o, 1, -1), bad);
     CHECK_STATUS(quadrel_options_set_field(o, 2), bad);
     CHECK_STATUS(quadrel_options_set_subdivision(o, 2147483647), bad);
+    CHECK_STATUS(quadrel_options_set_symmetry(o, 2), bad);
     CHECK_STATUS(quadrel_options_set_max_element_size(o, -1), bad);
     CHECK_STATUS(quadrel_options_set_base_mesh_size(o, HUGE_VAL), bad);
     CHECK_STATUS(quadrel_options_set_quality_floor(o, 0), bad);
@@ -47,6 +48,7 @@ static void options_out_of_range(void) {
     CHECK_STATUS(quadrel_options_set_relative_tolerance(NULL, 1, 0), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_options_set_field(NULL, 0), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_options_set_subdivision(NULL, 0), QUADREL_ERROR_NULL);
+    CHECK_STATUS(quadrel_options_set_symmetry(NULL, 1), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_options_set_max_element_size(NULL, 1), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_options_set_base_mesh_size(NULL, 1), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_options_set_quality_floor(NULL, 0.5), QUADREL_ERROR_NULL);
@@ -75,6 +77,21 @@ static size_t elements(const quadrel_options *options) {
     return count;
 }
 
+/* Whether the statistics of the plate's mesh under options tell its symmetries. */
+static int looks_for_symmetry(const quadrel_options *options) {
+    quadrel_domain *plate = new_plate();
+    quadrel_mesh *mesh = NULL;
+    const char *symmetry;
+    int looks;
+    OK(quadrel_generate(plate, options, NULL, &mesh));
+    symmetry = strstr(quadrel_mesh_statistics_json(mesh), "\"symmetry\":");
+    CHECK(symmetry != NULL);
+    looks = symmetry != NULL && strstr(symmetry, "\"mirrors\":") != NULL;
+    quadrel_mesh_free(mesh);
+    quadrel_domain_free(plate);
+    return looks;
+}
+
 static void options_do_something(void) {
     quadrel_options *o = quadrel_options_new();
     quadrel_norm norm;
@@ -93,6 +110,14 @@ static void options_do_something(void) {
         OK(quadrel_options_set_size_function(o, NULL, NULL, NULL));
         CHECK(elements(o) == usual);
     }
+    quadrel_options_free(o);
+
+    o = quadrel_options_new();
+    CHECK(looks_for_symmetry(o));
+    OK(quadrel_options_set_symmetry(o, QUADREL_SYMMETRY_IGNORED));
+    CHECK(!looks_for_symmetry(o));
+    OK(quadrel_options_set_symmetry(o, QUADREL_SYMMETRY_KEPT));
+    CHECK(looks_for_symmetry(o));
     quadrel_options_free(o);
 
     for (norm = QUADREL_NORM_L2; norm <= QUADREL_NORM_MAX; ++norm) {

@@ -209,6 +209,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         checked(quadrel_options_set_order(options, in.byte() % 6));
         checked(quadrel_options_set_field(options, in.byte() % 3));
         checked(quadrel_options_set_subdivision(options, in.byte() % 3));
+        checked(quadrel_options_set_symmetry(options, in.byte() % 3));
         break;
       case 15:
         checked(quadrel_options_set_relative_tolerance(options, in.byte() / 1000.0, in.byte() % 4));

@@ -188,7 +188,8 @@ pub unsafe extern "C" fn quadrel_mesh_boundary_name(
 /// The statistics of the run that made the mesh, as a JSON object: status, message, place, seconds (by stage,
 /// and total), triangles, singularities, separatrices, blocks, elements, order, nodes, irregular (interior,
 /// boundary), irregular_expected, scaled_jacobian (min, p1, mean), scaled_jacobian_ceiling, boundary_error
-/// (max, loops), fallback, attempts, rounds, warnings. The times are all in it that differs from run to run.
+/// (max, loops), symmetry (domain, mesh: rotations, mirrors each; asymmetry), fallback, attempts, rounds,
+/// warnings. The times are all in it that differs from run to run.
 #[no_mangle]
 pub unsafe extern "C" fn quadrel_mesh_statistics_json(mesh: *const quadrel_mesh) -> *const c_char {
     // SAFETY: the caller's promise (first comment of the header).

@@ -39,6 +39,14 @@ pub const QUADREL_SUBDIVISION_EQUAL_ERROR: quadrel_subdivision = 0;
 /// at the middle; nothing is coarsened afterwards
 pub const QUADREL_SUBDIVISION_HALVING: quadrel_subdivision = 1;
 
+/// What becomes of a domain's mirrors and rotations.
+pub type quadrel_symmetry = i32;
+
+/// they count for nothing
+pub const QUADREL_SYMMETRY_IGNORED: quadrel_symmetry = 0;
+/// the mesh has them, to rounding, if such a mesh is found that is not clearly worse
+pub const QUADREL_SYMMETRY_KEPT: quadrel_symmetry = 1;
+
 /// Options with their defaults.
 #[no_mangle]
 pub extern "C" fn quadrel_options_new() -> *mut quadrel_options {
@@ -162,6 +170,26 @@ pub unsafe extern "C" fn quadrel_options_set_subdivision(
                     let allowed = "a QUADREL_SUBDIVISION number";
                     return Err(Failure::argument("the subdivision", subdivision, allowed));
                 }
+            };
+            Ok(())
+        })
+    }
+}
+
+/// What becomes of the domain's mirrors and rotations; default QUADREL_SYMMETRY_KEPT. A size function or a base
+/// triangulation, which know nothing of them, switch it off. The statistics tell which the domain and the mesh have.
+#[no_mangle]
+pub unsafe extern "C" fn quadrel_options_set_symmetry(
+    options: *mut quadrel_options,
+    symmetry: quadrel_symmetry,
+) -> quadrel_status {
+    // SAFETY: the caller's promise (first comment of the header).
+    unsafe {
+        set(options, |o| {
+            o.symmetry = match symmetry {
+                QUADREL_SYMMETRY_IGNORED => false,
+                QUADREL_SYMMETRY_KEPT => true,
+                _ => return Err(Failure::argument("the symmetry", symmetry, "a QUADREL_SYMMETRY number")),
             };
             Ok(())
         })

@@ -34,6 +34,15 @@ pub(super) const TOO_LARGE: f64 = 1.1;
 /// Most elements, as a multiple of the first round's, before another layout is tried.
 const MOST_GROWTH: usize = 3;
 
+/// A valid mesh that keeps the tolerance.
+pub(super) struct Refined {
+    pub mesh: QuadMesh,
+    /// The same before it was coarsened, ...
+    pub fine: QuadMesh,
+    /// ... and coarsened, before it was divided for the sizes.
+    pub coarse: QuadMesh,
+}
+
 /// Makes the layout's quads curved elements that keep the tolerance.
 pub(super) fn refine_and_smooth(
     boundary: &Boundary,
@@ -43,7 +52,7 @@ pub(super) fn refine_and_smooth(
     sizes: &ElementSize,
     watch: &mut Watch,
     stages: &mut Stages,
-) -> Result<QuadMesh> {
+) -> Result<Refined> {
     let error = BoundaryError::new(*tolerance);
     let optimiser = Optimiser::new(boundary, options.order, Some(*tolerance));
     let mut mesh = start(boundary, layout)?;
@@ -123,9 +132,11 @@ pub(super) fn refine_and_smooth(
         let at = mesh.vertices[mesh.quads[worst][0] as usize].point;
         return Err(Error::InvalidElement { jacobian: quality.min_scaled_jacobian, at });
     }
+    let fine = mesh.clone();
     if coarsens && watch.work <= MOST_WORK {
         mesh = fewer_elements(mesh, &optimiser, floor, limit, watch, stages)?;
     }
+    let coarse = mesh.clone();
     // Parts of valid elements are valid, parts of edges nearer to the curve, and a solver's error falls with their
     // size as the order promises: nothing is smoothed any more.
     let slack = if limit.is_some() { TOO_LARGE } else { 1.0 };
@@ -144,7 +155,7 @@ pub(super) fn refine_and_smooth(
             format!("{} elements, more than the limit of {}", mesh.quads.len(), options.max_elements);
         return Err(Error::Layout { reason, at: None });
     }
-    Ok(mesh)
+    Ok(Refined { mesh, fine, coarse })
 }
 
 /// The mesh with strips ended that are much finer than wanted, if that pays: it costs irregular vertices.

@@ -33,6 +33,11 @@ impl Watch {
         Watch { progress: options.progress.clone(), reached: Arc::default(), work: 0 }
     }
 
+    /// For the mesh of a part of the domain: the same progress, work of its own.
+    pub fn of_part(&self) -> Self {
+        Watch { progress: self.progress.clone(), reached: Arc::clone(&self.reached), work: 0 }
+    }
+
     /// Reports `share` of `stage`, in 0..=1.
     pub fn report(&self, stage: Stage, share: f64) -> Result<()> {
         let begin = BEGINS[stage as usize];

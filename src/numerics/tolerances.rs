@@ -219,3 +219,19 @@ pub const STRAIGHT_CHAIN: f64 = 1e-11;
 /// Distance of an edge's nodes from their places on the straight line between its ends, relative to the
 /// largest coordinate of the ends, that is rounding: files then call the side straight. 16 roundings.
 pub const STRAIGHT_SIDE: f64 = 16.0 * f64::EPSILON;
+
+/// Distance, relative to the canonical diagonal, within which a boundary lies on its mirrored or turned image if it
+/// is symmetric: ten times what the tables' interpolant may be off; drawings that are not exact differ by 1e-6.
+pub const SYMMETRY: f64 = 1e-10;
+
+/// The same for a first look at a mirror or rotation that is then fitted: extremes of a distance are found to the
+/// square root of rounding.
+pub const SYMMETRY_ROUGH: f64 = 1e-7;
+
+/// Difference of two corners' angles, in radians, up to which they may be images of each other. Derivatives of
+/// callbacks by differences have it.
+pub const SYMMETRY_ANGLE: f64 = 1e-6;
+
+/// Distance, relative to the domain's diagonal, by which a boundary node may be off its mirror image: less is
+/// rounding, and the exact point stays.
+pub const SYMMETRY_ROUNDING: f64 = 1e-14;

@@ -25,6 +25,7 @@ mod respace;
 mod size_limit;
 mod split;
 mod stretch;
+mod strips;
 mod subdivide;
 #[cfg(test)]
 mod tests;
@@ -40,6 +41,7 @@ pub use pieces::least_pieces;
 pub use placement::{place_equal_error, Placement};
 pub use size_limit::SizeLimit;
 pub use split::split_chords;
+pub use strips::StripRemoval;
 pub use subdivide::subdivide;
 pub use thin::thin;
 pub use trial::Limits;

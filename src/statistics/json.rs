@@ -1,5 +1,6 @@
 //! Statistics as JSON: the statistics files of the command line, the statistics of the C interface.
 
+use crate::stages::SymmetryCount;
 use crate::statistics::Statistics;
 use serde_json::{json, Map, Value};
 
@@ -24,6 +25,7 @@ impl Statistics {
             })
             .collect();
         let list = |values: &[f64]| values.iter().map(|v| number(*v)).collect::<Vec<Value>>();
+        let count = |c: SymmetryCount| json!({ "rotations": c.rotations, "mirrors": c.mirrors });
         json!({
             "status": self.status,
             "message": self.message,
@@ -50,6 +52,11 @@ impl Statistics {
             "boundary_error": {
                 "max": self.boundary_error.as_ref().map(|e| number(e.max)),
                 "loops": self.boundary_error.as_ref().map(|e| list(&e.loops)),
+            },
+            "symmetry": {
+                "domain": self.symmetry.map(|s| count(s.domain)),
+                "mesh": self.symmetry.filter(|_| self.elements.is_some()).map(|s| count(s.mesh)),
+                "asymmetry": self.symmetry.and_then(|s| s.asymmetry).map(|a| a.name()),
             },
             "fallback": self.fallback,
             "attempts": self.attempts,

@@ -55,6 +55,9 @@ pub struct MeshArguments {
     /// Share of the best possible scaled Jacobian that coarsening does not take elements below
     #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     pub quality_floor: Option<f64>,
+    /// Mesh a symmetric domain without regard to its symmetries
+    #[arg(long)]
+    pub no_symmetry: bool,
     /// Cross field: diffused keeps singularities apart, harmonic is the paper's
     #[arg(long, value_enum, default_value_t = FieldName::Diffused)]
     pub field: FieldName,

@@ -2,7 +2,7 @@
 
 use quadrel::options::{Norm, Tolerance};
 use quadrel::progress::Stage;
-use quadrel::stages::Stages;
+use quadrel::stages::{Stages, SymmetryCount};
 use quadrel::statistics::Statistics;
 use quadrel::Options;
 use std::fmt::Write;
@@ -121,6 +121,15 @@ fn quality(text: &mut String, statistics: &Statistics) {
         let more = error.loops.len().saturating_sub(MOST_LOOPS);
         let _ = writeln!(text, "{}", if more > 0 { format!(" and {more} more") } else { String::new() });
     }
+    if let Some(symmetry) = statistics.symmetry.filter(|s| s.domain.order() > 1) {
+        let why = symmetry.asymmetry.map(|a| format!(" (because of {})", a.name()));
+        let (domain, mesh) = (symmetries(symmetry.domain), symmetries(symmetry.mesh));
+        let _ = writeln!(
+            text,
+            "symmetry         the domain has {domain}, the mesh {mesh}{}",
+            why.unwrap_or_default()
+        );
+    }
     if statistics.attempts > 1 {
         let _ = writeln!(text, "attempts         {} base mesh sizes were tried", statistics.attempts);
     }
@@ -129,6 +138,12 @@ fn quality(text: &mut String, statistics: &Statistics) {
         let by = by.get(usize::from(statistics.fallback)).unwrap_or(&"other means");
         let _ = writeln!(text, "fallback         some regions were repaired by {by}");
     }
+}
+
+/// Symmetries in words.
+fn symmetries(count: SymmetryCount) -> String {
+    let number = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    format!("{} and {}", number(count.rotations, "rotation"), number(count.mirrors, "mirror"))
 }
 
 /// Loops whose boundary error is shown one by one.

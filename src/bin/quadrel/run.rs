@@ -174,6 +174,7 @@ fn options(arguments: &MeshArguments) -> Result<Options> {
         norm: arguments.norm.into(),
         field: arguments.field.into(),
         max_element_size: arguments.max_size,
+        symmetry: !arguments.no_symmetry,
         progress: if arguments.log_stages { progress::log() } else { progress::terminal() },
         ..Options::default()
     };
