@@ -155,13 +155,19 @@ fn steps_1_to_9(
     stages: &mut Stages,
 ) -> Result<Refined> {
     // Steps 1 to 3: base mesh, cross field, singularities; refined until the index theorem holds.
-    let field = blocks::field(boundary, given, options, request, watch, stages)?;
+    let field = blocks::field(boundary, given, options, false, request, watch, stages)?;
 
     // What the stages aim at; the final mesh is measured against the tolerance itself.
     let aim = &BoundaryTolerance { value: TOLERANCE_AIM * tolerance.value, ..*tolerance };
 
     // Steps 4 to 6: separatrices, quad-dominant regions, repair.
-    let (layout, sizes) = blocks::layout(boundary, options, aim, &field, watch, stages)?;
+    let mut blocks = blocks::layout(boundary, options, aim, &field, watch, stages);
+    if matches!(blocks, Err(Error::Separatrix { .. })) {
+        // A line found no way: without the singularities that lie at corners it may.
+        let field = blocks::field(boundary, given, options, true, request, watch, stages)?;
+        blocks = blocks::layout(boundary, options, aim, &field, watch, stages);
+    }
+    let (layout, sizes) = blocks?;
 
     // Steps 7 to 9: subdivide and smooth until every boundary edge meets the tolerance.
     rounds::refine_and_smooth(boundary, options, aim, &layout, &sizes, watch, stages)

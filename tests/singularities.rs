@@ -3,7 +3,7 @@
 mod shapes;
 
 use quadrel::base_mesh::{triangulate, usual_size, Request};
-use quadrel::cross_field::{solve, solve_with_tips, Tips};
+use quadrel::cross_field::{solve, solve_with_corners, CornerRule};
 use quadrel::domain::Boundary;
 use quadrel::options::FieldMethod;
 use quadrel::singularities::{check, find, gate, resolve, Resolved};
@@ -163,8 +163,9 @@ fn on_a_second_try_corners_near_a_tie_take_up_the_singularities_beside_them() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/domains/icons/mdi/atv.svg");
     let b = Boundary::new(&quadrel::input::read(&path, None).unwrap().domain).unwrap();
     let mesh = triangulate(&b, &Request::default()).unwrap();
-    let [first, second] = [Tips::Balanced, Tips::OneQuad].map(|tips| {
-        let field = solve_with_tips(&mesh, &b, FieldMethod::Diffused, tips).unwrap();
+    let [first, second] = [false, true].map(|absorbing| {
+        let rule = CornerRule { absorbing, ..CornerRule::default() };
+        let field = solve_with_corners(&mesh, &b, FieldMethod::Diffused, rule).unwrap();
         let (singularities, corners) = find(&mesh, &b, &field).unwrap();
         check(&mesh, &singularities, &corners).unwrap();
         (singularities.len(), corners)

@@ -1,6 +1,7 @@
 //! The finite element solve for u = (cos 4θ, sin 4θ).
 
 use super::border::Border;
+use super::thickness::thickness;
 use super::tips::Held;
 use crate::base_mesh::Triangulation;
 use crate::error::{Error, Result};
@@ -110,12 +111,11 @@ fn renormalise(u: &mut [[f64; 2]], inner: &[u32]) {
     }
 }
 
-/// Solves for u at the vertices, where the domain is so thick; `held` fixes it at some inner ones.
+/// Solves for u at the vertices; `held` fixes it at some inner ones.
 pub(super) fn solve(
     mesh: &Triangulation,
     border: &Border,
     held: &[Option<Held>],
-    thickness: &[f64],
     method: FieldMethod,
 ) -> Result<Vec<[f64; 2]>> {
     let mut u = vec![[0.0; 2]; mesh.vertices.len()];
@@ -139,6 +139,7 @@ pub(super) fn solve(
             u[v as usize] = border.middle(v);
         }
         // A step longer than a thin part is wide would only bring back the harmonic field there.
+        let thickness = thickness(mesh, border);
         let time = |t: &[u32; 3]| {
             let mean = t.iter().map(|&v| thickness[v as usize]).sum::<f64>() / 3.0;
             DIFFUSION_TIME * mean * mean

@@ -7,8 +7,8 @@
 //! The border polygon's edges are streamlines: the cross on a border edge is the edge's direction.
 //! At a border vertex of interior angle θ that carries n quads the cross on the ray at polar angle φ
 //! from the outgoing border edge (direction a₀) is a₀ + φ (θ − n π/2) / θ: the vertex is blown
-//! up to an arc. n is 2 at every smooth border vertex. Where a singularity comes to lie at a corner of
-//! about 135°, 225° or 315°, the two together are that corner with one quad more or less (`absorption`).
+//! up to an arc. n is 2 at every smooth border vertex. On a second try corners near a
+//! tie of Table 1 take up singularities beside them (`absorption`).
 //!
 //! *Method:* linear finite elements for u, first harmonic (Kowalski, Ledoux, Frey 2013), then a few steps
 //! of diffusion and renormalisation (Merriman, Bence, Osher 1992; Viertel, Osting 2019), which keep
@@ -32,7 +32,7 @@ use crate::error::Result;
 use crate::options::FieldMethod;
 
 /// Most times that corners take up singularities and the field is solved again.
-const ABSORPTIONS: usize = 3;
+const ABSORPTIONS: usize = 8;
 
 /// The angle of one arm of the cross around a triangle, lifted to the real line.
 ///
@@ -75,31 +75,36 @@ pub struct CrossField {
 /// [`Error::CrossField`](crate::Error::CrossField) if the linear system cannot be solved or
 /// the turns around a triangle do not add up to quarter turns (a degenerate mesh).
 pub fn solve(mesh: &Triangulation, boundary: &Boundary, method: FieldMethod) -> Result<CrossField> {
-    solve_with_tips(mesh, boundary, method, Tips::Balanced)
+    solve_with_corners(mesh, boundary, method, CornerRule::default())
 }
 
-/// [`solve`] with a choice of the quads at sharp corners.
+/// How corners near a tie of Table 1 are treated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct CornerRule {
+    pub tips: Tips,
+    /// Whether corners of about 135°, 225° and 315° take up singularities in triangles at them: for a second try,
+    /// when a separatrix found no way.
+    pub absorbing: bool,
+}
+
+/// [`solve`] with a choice of the quads at corners near a tie.
 ///
 /// # Errors
 /// As [`solve`].
-pub fn solve_with_tips(
+pub fn solve_with_corners(
     mesh: &Triangulation,
     boundary: &Boundary,
     method: FieldMethod,
-    tips: Tips,
+    rule: CornerRule,
 ) -> Result<CrossField> {
-    let mut border = Border::new(mesh, boundary, tips)?;
-    let thickness = thickness::thickness(mesh, &border);
+    let mut border = Border::new(mesh, boundary, rule.tips)?;
     let mut rounds = 0;
     loop {
         let held = tips::held(mesh, boundary, &border);
-        let u = diffusion::solve(mesh, &border, &held, &thickness, method)?;
+        let u = diffusion::solve(mesh, &border, &held, method)?;
         let triangles = turning::triangle_crosses(mesh, &border, &held, &u)?;
         rounds += 1;
-        let corners_of_triangles_too = tips != Tips::Balanced;
-        if rounds > ABSORPTIONS
-            || !absorb(mesh, boundary, &thickness, &triangles, corners_of_triangles_too, &mut border)
-        {
+        if !rule.absorbing || rounds > ABSORPTIONS || !absorb(mesh, &triangles, &mut border) {
             return Ok(CrossField { u, triangles, quads_at: border.quads, border_angle: border.angle });
         }
     }

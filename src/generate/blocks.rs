@@ -2,7 +2,7 @@
 
 use super::watch::Watch;
 use crate::base_mesh::{self, ElementSize, Request, Triangulation};
-use crate::cross_field::{self, CrossField, Tips};
+use crate::cross_field::{self, CornerRule, CrossField, Tips};
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
 use crate::layout::{self, t_mesh, QuadLayout, Targets};
@@ -46,11 +46,12 @@ pub(super) fn refine(request: &mut Request, boundary: &Boundary) {
 }
 
 /// Base mesh, cross field and singularities, refined locally until the index theorem holds; on the `given`
-/// mesh, if there is one, without refinement.
+/// mesh, if there is one, without refinement. `absorbing`: see [`CornerRule`].
 pub(super) fn field(
     boundary: &Boundary,
     given: Option<&Triangulation>,
     options: &Options,
+    absorbing: bool,
     request: &mut Request,
     watch: &mut Watch,
     stages: &mut Stages,
@@ -62,6 +63,7 @@ pub(super) fn field(
         2 => Tips::OneQuad,
         _ => Tips::AllOneQuad,
     };
+    let rule = CornerRule { tips, absorbing };
     let mut round = 0;
     loop {
         let mesh = watch.run(stages, Stage::BaseMesh, |_| match given {
@@ -70,7 +72,7 @@ pub(super) fn field(
         })?;
         stages.triangulation = Some(mesh.clone());
         let cross = watch.run(stages, Stage::CrossField, |_| {
-            cross_field::solve_with_tips(&mesh, boundary, options.field, tips)
+            cross_field::solve_with_corners(&mesh, boundary, options.field, rule)
         })?;
         stages.cross_field = Some(cross.clone());
         let found = singularities::find(&mesh, boundary, &cross);

@@ -74,12 +74,6 @@ pub const CORNER_TIE: f64 = 1e-6;
 /// Distance from a tie of Table 1, in radians (15°), within which a corner may take up a singularity beside it, ...
 pub const CORNER_DOUBT: f64 = std::f64::consts::PI / 12.0;
 
-/// ... and within this share of the domain's thickness there and of the shorter of the corner's sides, ...
-pub const ABSORBING_REACH: f64 = 0.15;
-
-/// ... or in a triangle at the corner if the shorter side is shorter than this many edges of that triangle, ...
-pub const CROWDED_SIDE: f64 = 2.5;
-
 /// ... if the quads' angles there are between 60° and 120° then: as good as those at a singular point.
 pub const ABSORBING_ANGLES: [f64; 2] = [std::f64::consts::FRAC_PI_3, 2.0 * std::f64::consts::FRAC_PI_3];
 
