@@ -81,12 +81,11 @@ class Judge:
         row["scaled_jacobian"] = scaled_jacobian(mesh)
         sides, _ = mesh.boundary_sides()
         value, _ = basis(lobatto(mesh.order), np.linspace(-1, 1, 4 * mesh.order + 1))
-        points = np.einsum("qi,eic->eqc", value, sides)
-        length = np.hypot(*np.moveaxis(np.diff(points, axis=1), -1, 0)).sum()
-        row["boundary"] = self.domain.distance(points.reshape(-1, 2))
+        points = np.einsum("qi,eic->eqc", value, sides).reshape(-1, 2)
+        row["boundary"] = self.domain.distance(points)
         if row["scaled_jacobian"] <= 0:
             row["why"] = INVALID
-        elif abs(length / self.domain.length - 1) > 0.02:
+        elif not self.domain.followed(points):
             row["why"] = "does not follow all of the boundary"
         elif mesh.count > self.most:
             row["why"] = "too many unknowns"

@@ -14,6 +14,8 @@ from scipy.spatial import cKDTree
 
 # Samples of a curve from which Newton's iteration finds the nearest point.
 SAMPLES = 20000
+# Largest gap between points along a curve, as a share of its length, at which they are said to follow it.
+NEAR = 0.1
 # Largest degree of a polynomial equation.
 DEGREE = 12
 
@@ -209,7 +211,7 @@ class Domain:
         t = np.linspace(0, 1, SAMPLES + 1)
         lines = [c.point(t) for c in self.curves]
         samples = np.concatenate(lines)
-        self.length = sum(float(np.hypot(*np.diff(x, axis=0).T).sum()) for x in lines)
+        self._lines = [(x[:: SAMPLES // 100], float(np.hypot(*np.diff(x, axis=0).T).sum())) for x in lines]
         self.diagonal = float(np.hypot(*np.ptp(samples, axis=0)))
         self._tree = cKDTree(samples)
 
@@ -226,6 +228,11 @@ class Domain:
                 s = np.clip(s - np.sum(apart * slope, axis=1) / np.sum(slope * slope, axis=1), 0, 1)
             worst = max(worst, float(np.hypot(*(curve.point(s) - own).T).max()))
         return worst / self.diagonal
+
+    def followed(self, points):
+        """Whether `points`, all along a mesh's boundary, lie along every curve: some meshes lose small loops."""
+        tree = cKDTree(points)
+        return all(tree.query(line)[0].max() <= NEAR * length for line, length in self._lines)
 
     def add_to(self, kernel):
         """Makes the domain a surface of Gmsh's kernel."""

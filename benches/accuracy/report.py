@@ -59,6 +59,8 @@ def main():
         axis.set_title(domain, fontsize=9)
         axis.set_ylim(1e-10, 1e-1)
         axis.grid(True, linewidth=0.3)
+    for axis in axes.flat[len(rows) :]:
+        axis.remove()
     for axis in axes[:, 0]:
         axis.set_ylabel("relative error")
     for axis in axes[-1]:
