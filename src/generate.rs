@@ -7,6 +7,7 @@
 mod blocks;
 mod fewer_elements;
 mod rounds;
+mod smooth_edges;
 mod symmetric;
 mod watch;
 

@@ -1,6 +1,7 @@
 //! Steps 7 to 9: subdivide, smooth, coarsen; repeat until every boundary edge meets the tolerance.
 
 use super::fewer_elements::fewer_elements;
+use super::smooth_edges::smooth_edges;
 use super::watch::Watch;
 use crate::base_mesh::ElementSize;
 use crate::domain::{Boundary, BoundaryPoint, Place};
@@ -136,18 +137,32 @@ pub(super) fn refine_and_smooth(
     if coarsens && watch.work <= MOST_WORK {
         mesh = fewer_elements(mesh, &optimiser, floor, limit, watch, stages)?;
     }
+    let onto_breaks = |mesh: &mut QuadMesh, stages: &mut Stages, watch: &mut Watch| -> Result<()> {
+        let moved = coarsens
+            && watch.run(stages, Stage::Refine, |_| Ok(smooth_edges(mesh, boundary, &optimiser, floor)))?;
+        if moved {
+            note(stages, &optimiser, mesh, "joints");
+        }
+        Ok(())
+    };
+    onto_breaks(&mut mesh, stages, watch)?;
     let coarse = mesh.clone();
     // Parts of valid elements are valid, parts of edges nearer to the curve, and a solver's error falls with their
     // size as the order promises: nothing is smoothed any more.
     let slack = if limit.is_some() { TOO_LARGE } else { 1.0 };
     if options.element_size.is_some() || options.max_element_size.is_some() {
         let whole = SizeLimit::new(&allowed);
-        let before = mesh.quads.len();
-        mesh = watch.run(stages, Stage::Refine, |_| {
-            whole.divide_evenly(mesh, boundary, slack, options.order, options.max_elements)
-        })?;
-        if mesh.quads.len() > before {
+        // New vertices, too, go to breaks; where that made an element too large it is divided once more.
+        for _ in 0..2 {
+            let before = mesh.quads.len();
+            mesh = watch.run(stages, Stage::Refine, |_| {
+                whole.divide_evenly(mesh, boundary, slack, options.order, options.max_elements)
+            })?;
+            if mesh.quads.len() == before {
+                break;
+            }
             note(stages, &optimiser, &mesh, "divide");
+            onto_breaks(&mut mesh, stages, watch)?;
         }
     }
     if mesh.quads.len() > options.max_elements {

@@ -9,7 +9,8 @@
 //! [`place_by_halving`] is the paper's own rule (Algorithm 1), [`subdivide`] the same on a mesh.
 //!
 //! [`coarsen`] takes a valid mesh that is finer than it need be and removes chords and diagonals,
-//! re-optimising round each, while the tolerance and the quality hold.
+//! re-optimising round each, while the tolerance and the quality hold. [`OnChain`] moves boundary vertices to where
+//! the curve is less smooth.
 
 mod chords;
 mod coarsen;
@@ -30,6 +31,7 @@ mod subdivide;
 #[cfg(test)]
 mod tests;
 mod thin;
+mod to_breaks;
 mod trial;
 mod valence;
 
@@ -44,4 +46,5 @@ pub use split::split_chords;
 pub use strips::StripRemoval;
 pub use subdivide::subdivide;
 pub use thin::thin;
+pub use to_breaks::{OnChain, ToBreak, Undo};
 pub use trial::Limits;
