@@ -20,7 +20,7 @@ use std::collections::HashMap;
 /// Most rounds of subdivision and smoothing.
 const ROUNDS: usize = 5;
 /// Element evaluations (some microseconds each at order 5) after which no further round or attempt begins.
-pub(super) const MOST_WORK: u64 = 3_000_000;
+pub(super) const MOST_WORK: u64 = 8_000_000;
 /// Edge lengths in wanted sizes above which a chord is divided.
 const TOO_LONG: f64 = 2.5;
 /// Quads above which strips finer than wanted are ended before anything is optimised, ...

@@ -62,7 +62,7 @@ const WORKED_OFF: f64 = 0.9;
 /// Weight of the mean scaled Jacobian against the least when rounds are compared.
 const MEAN_WEIGHT: f64 = 0.2;
 /// Work after which no further way of untangling is tried, and for improving.
-pub(super) const MOST_WORK: u64 = 1_500_000;
+pub(super) const MOST_WORK: u64 = 4_000_000;
 /// Scaled Jacobian below which elements of a whole mesh are seen to first, with their surroundings only.
 const POOR: f64 = 0.2;
 /// Work after which that ends.
