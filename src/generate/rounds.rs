@@ -137,6 +137,7 @@ pub(super) fn refine_and_smooth(
     if coarsens && watch.work <= MOST_WORK {
         mesh = fewer_elements(mesh, &optimiser, floor, limit, watch, stages)?;
     }
+    let coarse = mesh.clone();
     let onto_breaks = |mesh: &mut QuadMesh, stages: &mut Stages, watch: &mut Watch| -> Result<()> {
         let moved = coarsens
             && watch.run(stages, Stage::Refine, |_| Ok(smooth_edges(mesh, boundary, &optimiser, floor)))?;
@@ -146,7 +147,6 @@ pub(super) fn refine_and_smooth(
         Ok(())
     };
     onto_breaks(&mut mesh, stages, watch)?;
-    let coarse = mesh.clone();
     // Parts of valid elements are valid, parts of edges nearer to the curve, and a solver's error falls with their
     // size as the order promises: nothing is smoothed any more.
     let slack = if limit.is_some() { TOO_LARGE } else { 1.0 };

@@ -90,7 +90,7 @@ pub(super) fn symmetrise(
 ) -> Result<(Symmetrised, Option<Asymmetry>)> {
     let aim = BoundaryTolerance { value: TOLERANCE_AIM * setting.tolerance.value, ..*setting.tolerance };
     let optimiser = Optimiser::new(boundary, setting.options.order, Some(aim));
-    let bar = Bar::of(&optimiser.quality(&direct.coarse), setting.options, boundary);
+    let bar = Bar::of(&optimiser.quality(&direct.coarse), setting.options);
     let mut best = Symmetrised { mesh: direct.coarse.clone(), elements: vec![0] };
     let mut asymmetry = Asymmetry::Connectivity;
     if let Some(own) = averaged(&best.mesh, boundary, group) {

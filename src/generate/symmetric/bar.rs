@@ -7,8 +7,8 @@ use crate::options::Options;
 use crate::smooth::Quality;
 use crate::stages::Asymmetry;
 
-/// Share of the direct mesh's least scaled Jacobian that a symmetric one has at least.
-const LEAST_QUALITY: f64 = 0.95;
+/// Share of the direct mesh's least scaled Jacobian that a symmetric one has at least: symmetry is worth some of it.
+const LEAST_QUALITY: f64 = 0.85;
 /// Most elements of a symmetric mesh: this multiple of the direct one's, and some more.
 const MOST_ELEMENTS: f64 = 1.25;
 const MORE_ELEMENTS: f64 = 4.0;
@@ -28,11 +28,9 @@ pub(super) struct Bar {
 }
 
 impl Bar {
-    pub fn of(direct: &Quality, options: &Options, boundary: &Boundary) -> Self {
-        let (least, floor) = (direct.min_scaled_jacobian, floor(options, boundary));
+    pub fn of(direct: &Quality, options: &Options) -> Self {
         Bar {
-            // Not below what coarsening keeps to, either.
-            scaled_jacobian: (LEAST_QUALITY * least).max(floor.min(least)),
+            scaled_jacobian: LEAST_QUALITY * direct.min_scaled_jacobian,
             error_ratio: direct.error_ratio.max(1.0 / TOLERANCE_AIM),
             direct: direct.elements.len(),
             elements: (MOST_ELEMENTS * direct.elements.len() as f64 + MORE_ELEMENTS)
