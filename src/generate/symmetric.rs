@@ -90,13 +90,18 @@ pub(super) fn symmetrise(
 ) -> Result<(Symmetrised, Option<Asymmetry>)> {
     let aim = BoundaryTolerance { value: TOLERANCE_AIM * setting.tolerance.value, ..*setting.tolerance };
     let optimiser = Optimiser::new(boundary, setting.options.order, Some(aim));
-    let bar = Bar::of(&optimiser.quality(&direct.coarse), setting.options);
+    let quality = optimiser.quality(&direct.coarse);
+    let bar = Bar::of(&quality, setting.options, boundary);
     let mut best = Symmetrised { mesh: direct.coarse.clone(), elements: vec![0] };
     let mut asymmetry = Asymmetry::Connectivity;
+    let mut second_choice = Vec::new();
     if let Some(own) = averaged(&best.mesh, boundary, group) {
         match bar.objection(&optimiser.quality(&own.mesh)) {
             None => best = own,
-            Some(reason) => asymmetry = reason,
+            Some(reason) => {
+                asymmetry = reason;
+                second_choice.push(own);
+            }
         }
     }
     // Quads that were optimised for sectors: what a sector costs is about its share of the whole mesh.
@@ -129,6 +134,7 @@ pub(super) fn symmetrise(
         spent += part.spent;
         let welded = sector.weld(&part.mesh, boundary, group).ok();
         let candidate = welded.and_then(|whole| averaged(&whole, boundary, group));
+        second_choice.extend(candidate.clone());
         asymmetry = better(&mut best, candidate, &optimiser, group, &bar).unwrap_or(asymmetry);
     }
     // Coarsening removes one strip after the other; what was there before may have been more symmetric.
@@ -136,6 +142,12 @@ pub(super) fn symmetrise(
     if best.elements.len() < group.elements.len() && few {
         let candidate = averaged(&direct.fine, boundary, group);
         asymmetry = better(&mut best, candidate, &optimiser, group, &bar).unwrap_or(asymmetry);
+    }
+    let lowered = bar.lowered(&quality);
+    for candidate in second_choice {
+        if best.elements.len() < group.elements.len() {
+            asymmetry = better(&mut best, Some(candidate), &optimiser, group, &lowered).unwrap_or(asymmetry);
+        }
     }
     if best.elements.len() > 1 {
         note(stages, &optimiser, &best.mesh, "symmetrise");

@@ -7,8 +7,10 @@ use crate::options::Options;
 use crate::smooth::Quality;
 use crate::stages::Asymmetry;
 
-/// Share of the direct mesh's least scaled Jacobian that a symmetric one has at least: symmetry is worth some of it.
-const LEAST_QUALITY: f64 = 0.85;
+/// Share of the direct mesh's least scaled Jacobian that a symmetric one has at least, ...
+const LEAST_QUALITY: f64 = 0.95;
+/// ... or this where there is no better one: symmetry is worth some quality.
+const STILL_GOOD: f64 = 0.85;
 /// Most elements of a symmetric mesh: this multiple of the direct one's, and some more.
 const MOST_ELEMENTS: f64 = 1.25;
 const MORE_ELEMENTS: f64 = 4.0;
@@ -28,14 +30,21 @@ pub(super) struct Bar {
 }
 
 impl Bar {
-    pub fn of(direct: &Quality, options: &Options) -> Self {
+    pub fn of(direct: &Quality, options: &Options, boundary: &Boundary) -> Self {
+        let (least, floor) = (direct.min_scaled_jacobian, floor(options, boundary));
         Bar {
-            scaled_jacobian: LEAST_QUALITY * direct.min_scaled_jacobian,
+            // Not below what coarsening keeps to, either.
+            scaled_jacobian: (LEAST_QUALITY * least).max(floor.min(least)),
             error_ratio: direct.error_ratio.max(1.0 / TOLERANCE_AIM),
             direct: direct.elements.len(),
             elements: (MOST_ELEMENTS * direct.elements.len() as f64 + MORE_ELEMENTS)
                 .min(options.max_elements as f64),
         }
+    }
+
+    /// The lower bar for the second choice.
+    pub fn lowered(&self, direct: &Quality) -> Self {
+        Bar { scaled_jacobian: STILL_GOOD * direct.min_scaled_jacobian, ..*self }
     }
 
     pub fn shape_objection(&self, mesh: &Quality) -> Option<Asymmetry> {
