@@ -63,8 +63,9 @@ step "tests"
 cargo test --release --locked
 
 step "C and C++"
-# One folder for cargo and all builds of the tests.
+# One folder for all builds of the tests; cargo goes on where it has built the libraries' dependencies already.
 interface="$PWD/target/interface"
+cargo_folder="${CARGO_TARGET_DIR:-$PWD/target}"
 python="$interface/python/bin/python"
 if ! "$python" -c 'import gmsh, numpy, mfem' 2>/dev/null; then
     say "installing gmsh, mfem and numpy for Python into target/interface/python"
@@ -74,7 +75,7 @@ if ! "$python" -c 'import gmsh, numpy, mfem' 2>/dev/null; then
     "$python" -m pip install --quiet --disable-pip-version-check --no-deps mfem==4.10.0.1
 fi
 configure() {
-    cmake -S cpp_tests -B "$@" -DQUADREL_CARGO_TARGET_DIR="$interface/cargo" -DQUADREL_TEST_PYTHON="$python" >/dev/null
+    cmake -S cpp_tests -B "$@" -DQUADREL_CARGO_TARGET_DIR="$cargo_folder" -DQUADREL_TEST_PYTHON="$python" >/dev/null
 }
 configure "$interface/tests"
 cmake --build "$interface/tests" --parallel 2
@@ -89,8 +90,7 @@ cpp_tests/fuzz/run.sh "$interface/fuzz" "${QUADREL_FUZZ_SECONDS:-60}"
 
 step "the commands of the README"
 cargo build --release --locked
-binary="$PWD/target/release/quadrel"
-[ -z "${CARGO_TARGET_DIR:-}" ] || binary="$CARGO_TARGET_DIR/release/quadrel"
+binary="$cargo_folder/release/quadrel"
 scratch=$(mktemp -d)
 (
     cd "$scratch"

@@ -42,7 +42,7 @@ inline std::vector<Example> examples(const std::string& folder) {
   add("NACA0012", quadrel::Domain::read(folder + "/hohq/NACA0012.control"), {"Bottom", "Right", "Top", "Left"}, 1e-6, 10.0);
   add("annulus", annulus(), {"outside"}, 1e-6, 10.0);
   add("letter", quadrel::Domain::read(letter), {""}, 1e-6, 4.0);
-  add("letter, tolerance 1e-9", quadrel::Domain::read(letter), {""}, 1e-9, 6.0);
+  add("letter, tolerance 1e-9", quadrel::Domain::read(letter), {""}, 1e-9, 5.0);
   return list;
 }
 

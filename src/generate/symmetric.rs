@@ -4,6 +4,7 @@ mod bar;
 mod part;
 
 use super::rounds::{note, Refined};
+use super::smooth_edges::smooth_edges;
 use super::watch::Watch;
 use super::TOLERANCE_AIM;
 use crate::domain::Boundary;
@@ -11,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::mesh::{scaled_jacobian_ceiling, BoundaryTolerance, ExactCurve, QuadMesh};
 use crate::numerics::tolerances::ORDER_TIE;
 use crate::numerics::Point;
-use crate::options::Options;
+use crate::options::{Options, Subdivision};
 use crate::refine::{Limits, SizeLimit, StripRemoval};
 use crate::smooth::Optimiser;
 use crate::stages::{Asymmetry, Stages, SymmetryCount, SymmetryReport};
@@ -150,9 +151,11 @@ pub(super) fn symmetrise(
         }
     }
     if best.elements.len() > 1 {
+        best = with_smooth_edges(best, setting.options, &optimiser, group, &lowered);
         note(stages, &optimiser, &best.mesh, "symmetrise");
         if let Some(size) = setting.options.max_element_size {
-            match divided(&best, size / boundary.frame.scale, setting.options, boundary, group) {
+            let size = size / boundary.frame.scale;
+            match divided(&best, size, setting.options, &optimiser, group, &lowered) {
                 Some(finer) => {
                     best = finer;
                     note(stages, &optimiser, &best.mesh, "divide");
@@ -167,19 +170,41 @@ pub(super) fn symmetrise(
     Ok((best, Some(asymmetry)))
 }
 
+/// `found` with boundary vertices at joints and knots, as the direct mesh has them, where that keeps its symmetries.
+fn with_smooth_edges(
+    found: Symmetrised,
+    options: &Options,
+    optimiser: &Optimiser,
+    group: &Group,
+    bar: &Bar,
+) -> Symmetrised {
+    let boundary = optimiser.boundary();
+    let mut mesh = found.mesh.clone();
+    let moved = options.subdivision == Subdivision::EqualError
+        && smooth_edges(&mut mesh, boundary, optimiser, floor(options, boundary));
+    let better = moved.then(|| averaged(&mesh, boundary, group)).flatten();
+    let kept = |mesh: &Symmetrised| {
+        mesh.elements.len() >= found.elements.len()
+            && bar.shape_objection(&optimiser.quality(&mesh.mesh)).is_none()
+    };
+    better.filter(kept).unwrap_or(found)
+}
+
 /// `found` divided into equal parts of at most `size`, as the direct mesh is; `None` where that loses symmetries.
 fn divided(
     found: &Symmetrised,
     size: f64,
     options: &Options,
-    boundary: &Boundary,
+    optimiser: &Optimiser,
     group: &Group,
+    bar: &Bar,
 ) -> Option<Symmetrised> {
+    let boundary = optimiser.boundary();
     let allowed = |_: Point| size;
     let limit = SizeLimit::new(&allowed);
     let (order, most) = (options.order, options.max_elements);
     let mesh = limit.divide_evenly(found.mesh.clone(), boundary, 1.0, order, most).ok()?;
-    let finer = averaged(&mesh, boundary, group)?;
+    let finer = with_smooth_edges(averaged(&mesh, boundary, group)?, options, optimiser, group, bar);
     let small = !limit.too_long(&finer.mesh, 1.0 + 2.0 * ORDER_TIE).contains(&true);
     (small && finer.elements.len() >= found.elements.len()).then_some(finer)
 }
