@@ -269,3 +269,16 @@ fn real_outlines_are_read_and_only_true_cusps_refused() {
         assert!((area - b.area).abs() < 1e-9, "{name}: {area} {}", b.area);
     }
 }
+
+#[test]
+fn a_path_that_misses_its_start_by_rounding_has_no_closing_line() {
+    let segments = |gap: &str| {
+        let text = format!("<svg><path d=\"M0 0H4V3H0L{gap} 0Z\"/></svg>");
+        let domain = read_svg_str(&text, None).unwrap().domain;
+        Boundary::new(&domain).unwrap().check().unwrap();
+        assert!((domain.area().unwrap() - 12.0).abs() < 1e-4);
+        domain.loops()[0].segments().len()
+    };
+    assert_eq!(segments("-0.0000005"), 4);
+    assert_eq!(segments("-0.00001"), 5);
+}

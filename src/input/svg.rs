@@ -4,6 +4,7 @@ use crate::domain::{Domain, DomainBuilder, LoopKind};
 use crate::error::{Error, Result};
 use crate::input::svg_arc::CenterArc;
 use crate::input::Model;
+use crate::numerics::tolerances::CLOSED_PATH;
 use svgtypes::{PathParser, PathSegment};
 
 /// Reads the text of an SVG file.
@@ -99,6 +100,8 @@ struct Pen<'a> {
     name: &'a str,
     at: [f64; 2],
     start: [f64; 2],
+    /// Least and greatest coordinates of the subpath's points.
+    extent: [[f64; 2]; 2],
     open: bool,
     control: LastControl,
 }
@@ -125,15 +128,19 @@ impl Pen<'_> {
         if !self.open {
             self.builder.begin_loop(LoopKind::Auto, self.name)?;
             self.start = self.at;
+            self.extent = [self.at; 2];
             self.open = true;
         }
         Ok(())
     }
 
-    /// Ends the subpath, with a straight line back to its start if it is not there.
+    /// Ends the subpath, with a straight line back to its start if it is not there but for rounding.
     fn close(&mut self) -> Result<()> {
         if self.open {
-            if self.at != self.start {
+            let [low, high] = self.extent;
+            let size = (high[0] - low[0]).hypot(high[1] - low[1]);
+            let gap = (self.at[0] - self.start[0]).hypot(self.at[1] - self.start[1]);
+            if gap > CLOSED_PATH * size {
                 self.builder.add_line(up(self.at), up(self.start), "")?;
             }
             self.builder.end_loop()?;
@@ -182,6 +189,15 @@ impl Pen<'_> {
     }
 
     fn draw(&mut self, command: PathSegment) -> Result<()> {
+        self.follow(command)?;
+        for k in 0..2 {
+            self.extent[0][k] = self.extent[0][k].min(self.at[k]);
+            self.extent[1][k] = self.extent[1][k].max(self.at[k]);
+        }
+        Ok(())
+    }
+
+    fn follow(&mut self, command: PathSegment) -> Result<()> {
         match command {
             PathSegment::MoveTo { abs, x, y } => {
                 let to = self.place(abs, x, y);
@@ -234,8 +250,15 @@ fn add_path(builder: &mut DomainBuilder, data: &str, name: &str, line: usize, co
         }
         other => other,
     };
-    let mut pen =
-        Pen { builder, name, at: [0.0; 2], start: [0.0; 2], open: false, control: LastControl::None };
+    let mut pen = Pen {
+        builder,
+        name,
+        at: [0.0; 2],
+        start: [0.0; 2],
+        extent: [[0.0; 2]; 2],
+        open: false,
+        control: LastControl::None,
+    };
     for command in PathParser::from(data) {
         pen.draw(command.map_err(|e| path_error(e, line, column))?).map_err(located)?;
     }

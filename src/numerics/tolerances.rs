@@ -7,6 +7,11 @@
 /// the worst of HOHQMesh's examples.
 pub const JOIN: f64 = 1e-4;
 
+/// Gap between a path's last point and its first below which there is no closing line, relative to the size of the
+/// path: coordinates in single precision, and sums of relative ones, miss the first point by about as much. A
+/// line as short as that would be a segment with two corners, which the mesh has to keep apart.
+pub const CLOSED_PATH: f64 = 2e-7;
+
 /// Least change of direction, in radians, that makes a boundary point a mesh vertex for good
 /// (a polynomial edge across it would converge algebraically only).
 pub const CORNER_TURN: f64 = 1e-3;
