@@ -281,4 +281,6 @@ fn a_path_that_misses_its_start_by_rounding_has_no_closing_line() {
     };
     assert_eq!(segments("-0.0000005"), 4);
     assert_eq!(segments("-0.00001"), 5);
+    // One that would run back over the path, as after coordinates rounded to few digits, is none.
+    assert_eq!(segments("0.00001"), 4);
 }

@@ -4,7 +4,7 @@ use crate::domain::{Domain, DomainBuilder, LoopKind};
 use crate::error::{Error, Result};
 use crate::input::svg_arc::CenterArc;
 use crate::input::Model;
-use crate::numerics::tolerances::CLOSED_PATH;
+use crate::numerics::tolerances::{CLOSED_PATH, JOIN};
 use svgtypes::{PathParser, PathSegment};
 
 /// Reads the text of an SVG file.
@@ -104,6 +104,16 @@ struct Pen<'a> {
     extent: [[f64; 2]; 2],
     open: bool,
     control: LastControl,
+    /// Directions in which the subpath leaves its start and arrives at the current point, where known.
+    leaving: Option<[f64; 2]>,
+    arriving: Option<[f64; 2]>,
+}
+
+/// Cosine of the turn (165°) above which a closing line no longer than a gap at a joint runs back over the path.
+const TURNED_BACK: f64 = 0.966;
+
+fn between(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [b[0] - a[0], b[1] - a[1]]
 }
 
 fn up(p: [f64; 2]) -> [f64; 2] {
@@ -140,7 +150,7 @@ impl Pen<'_> {
             let [low, high] = self.extent;
             let size = (high[0] - low[0]).hypot(high[1] - low[1]);
             let gap = (self.at[0] - self.start[0]).hypot(self.at[1] - self.start[1]);
-            if gap > CLOSED_PATH * size {
+            if gap > CLOSED_PATH * size && !(gap <= JOIN * size && self.closing_turns_back()) {
                 self.builder.add_line(up(self.at), up(self.start), "")?;
             }
             self.builder.end_loop()?;
@@ -151,8 +161,27 @@ impl Pen<'_> {
         Ok(())
     }
 
+    /// Whether the line to the start would run back along the segment before it or the one after it.
+    fn closing_turns_back(&self) -> bool {
+        let closing = between(self.at, self.start);
+        let back = |d: &[f64; 2]| {
+            let along = closing[0] * d[0] + closing[1] * d[1];
+            along < -TURNED_BACK * closing[0].hypot(closing[1]) * d[0].hypot(d[1])
+        };
+        self.leaving.iter().chain(&self.arriving).any(back)
+    }
+
+    /// Notes the directions at both ends of a segment from the current point.
+    fn directed(&mut self, ends: Option<[[f64; 2]; 2]>) {
+        if self.at == self.start {
+            self.leaving = ends.map(|e| e[0]);
+        }
+        self.arriving = ends.map(|e| e[1]);
+    }
+
     fn line(&mut self, to: [f64; 2]) -> Result<()> {
         self.begin()?;
+        self.directed(Some([between(self.at, to); 2]));
         self.builder.add_line(up(self.at), up(to), "")?;
         self.at = to;
         self.control = LastControl::None;
@@ -161,6 +190,7 @@ impl Pen<'_> {
 
     fn cubic(&mut self, c1: [f64; 2], c2: [f64; 2], to: [f64; 2]) -> Result<()> {
         self.begin()?;
+        self.directed(Some([between(self.at, c1), between(c2, to)]));
         self.builder.add_bezier(&[up(self.at), up(c1), up(c2), up(to)], "")?;
         self.at = to;
         self.control = LastControl::Cubic(c2);
@@ -169,6 +199,7 @@ impl Pen<'_> {
 
     fn quadratic(&mut self, c: [f64; 2], to: [f64; 2]) -> Result<()> {
         self.begin()?;
+        self.directed(Some([between(self.at, c), between(c, to)]));
         self.builder.add_bezier(&[up(self.at), up(c), up(to)], "")?;
         self.at = to;
         self.control = LastControl::Quadratic(c);
@@ -177,6 +208,7 @@ impl Pen<'_> {
 
     fn arc(&mut self, radii: [f64; 2], rotation: f64, large: bool, sweep: bool, to: [f64; 2]) -> Result<()> {
         self.begin()?;
+        self.directed(None);
         if to != self.at {
             match CenterArc::from_end_points(self.at, to, radii, rotation, large, sweep) {
                 Some(arc) => self.builder.add_curve(std::sync::Arc::new(arc.flipped()), "")?,
@@ -258,6 +290,8 @@ fn add_path(builder: &mut DomainBuilder, data: &str, name: &str, line: usize, co
         extent: [[0.0; 2]; 2],
         open: false,
         control: LastControl::None,
+        leaving: None,
+        arriving: None,
     };
     for command in PathParser::from(data) {
         pen.draw(command.map_err(|e| path_error(e, line, column))?).map_err(located)?;
