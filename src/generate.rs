@@ -17,8 +17,7 @@ use crate::error::{Error, Result};
 use crate::mesh::{BoundaryTolerance, DomainCurve, HighOrderMesh};
 use crate::options::Options;
 use crate::progress::Stage;
-use crate::stages::{Asymmetry, Stages};
-use crate::symmetry::{Group, SymmetricCurve};
+use crate::stages::Stages;
 use rounds::Refined;
 use watch::Watch;
 
@@ -84,7 +83,8 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
         let result = elements.and_then(|elements| {
             if !group.is_trivial() {
                 let setting = symmetric::Setting { options, tolerance: &tolerance };
-                let made = symmetric_mesh(setting, &boundary, domain, &group, &elements, &mut watch, stages)?;
+                let made =
+                    symmetric::proven(setting, &boundary, domain, &group, &elements, &mut watch, stages)?;
                 if let Some(mesh) = made {
                     return Ok(mesh);
                 }
@@ -108,42 +108,6 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
         blocks::refine(&mut request, &boundary);
     }
     Err(failure.unwrap_or(Error::Cancelled))
-}
-
-/// The mesh with as many symmetries of the domain as one was found for, proven; `None` if the direct one has to do.
-fn symmetric_mesh(
-    setting: symmetric::Setting,
-    boundary: &Boundary,
-    domain: &Domain,
-    group: &Group,
-    direct: &Refined,
-    watch: &mut Watch,
-    stages: &mut Stages,
-) -> Result<Option<HighOrderMesh>> {
-    let (before, rounds) = (stages.quad_mesh.clone(), stages.rounds.len());
-    let (found, asymmetry) = symmetric::symmetrise(setting, boundary, group, direct, watch, stages)?;
-    symmetric::report(stages, group, &found.elements, asymmetry);
-    if found.elements.len() < 2 {
-        return Ok(None);
-    }
-    let curve = SymmetricCurve {
-        exact: &DomainCurve { boundary, domain },
-        boundary,
-        symmetries: found.elements.iter().map(|e| &group.elements[*e]).collect(),
-    };
-    let proven = watch.run(stages, Stage::Mesh, |_| {
-        HighOrderMesh::with_curve(&found.mesh, boundary, &curve, setting.tolerance)
-    });
-    match proven {
-        Ok(mesh) => Ok(Some(mesh)),
-        Err(error @ (Error::Cancelled | Error::Callback { .. })) => Err(error),
-        Err(_) => {
-            stages.quad_mesh = before;
-            stages.rounds.truncate(rounds);
-            symmetric::report(stages, group, &[0], Some(Asymmetry::Quality));
-            Ok(None)
-        }
-    }
 }
 
 fn steps_1_to_9(

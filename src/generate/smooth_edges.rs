@@ -17,7 +17,7 @@ pub(super) fn smooth_edges(
     optimiser: &Optimiser,
     floor: f64,
 ) -> bool {
-    let around = quads_around(mesh);
+    let around = mesh.quads_around();
     let least = floor.max(KEPT * optimiser.quality(mesh).min_scaled_jacobian);
     let beside = |vertices: &[u32]| {
         let mut quads: Vec<u32> = vertices.iter().flat_map(|v| &around[*v as usize]).copied().collect();
@@ -55,13 +55,4 @@ pub(super) fn smooth_edges(
         }
     }
     any
-}
-
-/// The quads at each vertex.
-fn quads_around(mesh: &QuadMesh) -> Vec<Vec<u32>> {
-    let mut around = vec![Vec::new(); mesh.vertices.len()];
-    for (q, quad) in (0u32..).zip(&mesh.quads) {
-        quad.iter().for_each(|v| around[*v as usize].push(q));
-    }
-    around
 }

@@ -7,16 +7,19 @@ use super::rounds::{note, Refined};
 use super::smooth_edges::smooth_edges;
 use super::watch::Watch;
 use super::TOLERANCE_AIM;
-use crate::domain::Boundary;
+use crate::domain::{Boundary, Domain};
 use crate::error::{Error, Result};
-use crate::mesh::{scaled_jacobian_ceiling, BoundaryTolerance, ExactCurve, QuadMesh};
+use crate::mesh::{
+    scaled_jacobian_ceiling, BoundaryTolerance, DomainCurve, ExactCurve, HighOrderMesh, QuadMesh,
+};
 use crate::numerics::tolerances::ORDER_TIE;
 use crate::numerics::Point;
 use crate::options::{Options, Subdivision};
+use crate::progress::Stage;
 use crate::refine::{Limits, SizeLimit, StripRemoval};
 use crate::smooth::Optimiser;
 use crate::stages::{Asymmetry, Stages, SymmetryCount, SymmetryReport};
-use crate::symmetry::{average, mesh_symmetries, strip_orbits, Group, Sector};
+use crate::symmetry::{average, mesh_symmetries, strip_orbits, Group, Sector, SymmetricCurve};
 use bar::{floor, Bar};
 use part::{cuts, part_mesh};
 
@@ -73,6 +76,42 @@ pub(super) fn report(stages: &mut Stages, group: &Group, elements: &[usize], asy
         let rotations = elements.iter().filter(|e| **e < group.rotations).count();
         report.mesh = SymmetryCount { rotations, mirrors: elements.len() - rotations };
         report.asymmetry = asymmetry.filter(|_| elements.len() < group.elements.len());
+    }
+}
+
+/// The mesh with as many symmetries of the domain as one was found for, proven; `None` if the direct one has to do.
+pub(super) fn proven(
+    setting: Setting,
+    boundary: &Boundary,
+    domain: &Domain,
+    group: &Group,
+    direct: &Refined,
+    watch: &mut Watch,
+    stages: &mut Stages,
+) -> Result<Option<HighOrderMesh>> {
+    let (before, rounds) = (stages.quad_mesh.clone(), stages.rounds.len());
+    let (found, asymmetry) = symmetrise(setting, boundary, group, direct, watch, stages)?;
+    report(stages, group, &found.elements, asymmetry);
+    if found.elements.len() < 2 {
+        return Ok(None);
+    }
+    let curve = SymmetricCurve {
+        exact: &DomainCurve { boundary, domain },
+        boundary,
+        symmetries: found.elements.iter().map(|e| &group.elements[*e]).collect(),
+    };
+    let proven = watch.run(stages, Stage::Mesh, |_| {
+        HighOrderMesh::with_curve(&found.mesh, boundary, &curve, setting.tolerance)
+    });
+    match proven {
+        Ok(mesh) => Ok(Some(mesh)),
+        Err(error @ (Error::Cancelled | Error::Callback { .. })) => Err(error),
+        Err(_) => {
+            stages.quad_mesh = before;
+            stages.rounds.truncate(rounds);
+            report(stages, group, &[0], Some(Asymmetry::Quality));
+            Ok(None)
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use crate::domain::{Domain, DomainBuilder, LoopKind};
 use crate::error::{Error, Result};
 use crate::input::svg_arc::CenterArc;
 use crate::input::Model;
-use crate::numerics::tolerances::{CLOSED_PATH, JOIN};
+use crate::numerics::tolerances::{CLOSED_PATH, JOIN, TURNED_BACK};
 use svgtypes::{PathParser, PathSegment};
 
 /// Reads the text of an SVG file.
@@ -108,9 +108,6 @@ struct Pen<'a> {
     leaving: Option<[f64; 2]>,
     arriving: Option<[f64; 2]>,
 }
-
-/// Cosine of the turn (165°) above which a closing line no longer than a gap at a joint runs back over the path.
-const TURNED_BACK: f64 = 0.966;
 
 fn between(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [b[0] - a[0], b[1] - a[1]]

@@ -40,6 +40,15 @@ pub struct QuadMesh {
 }
 
 impl QuadMesh {
+    /// The quads at each vertex, ascending.
+    pub fn quads_around(&self) -> Vec<Vec<u32>> {
+        let mut around = vec![Vec::new(); self.vertices.len()];
+        for (q, quad) in (0u32..).zip(&self.quads) {
+            quad.iter().for_each(|v| around[*v as usize].push(q));
+        }
+        around
+    }
+
     /// Builds edges and adjacency. `shapes` gives the bubbles of interior edges by their vertices
     /// (first → second); edges it does not know are straight. `Err` tells the defect in words and where.
     pub fn new(

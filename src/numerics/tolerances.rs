@@ -12,6 +12,10 @@ pub const JOIN: f64 = 1e-4;
 /// line as short as that would be a segment with two corners, which the mesh has to keep apart.
 pub const CLOSED_PATH: f64 = 2e-7;
 
+/// Cosine of the turn (165°) from which a closing line no longer than [`JOIN`] runs back over the path: rounded
+/// coordinates went past the start. A blunt tip's closing line turns by about 90°.
+pub const TURNED_BACK: f64 = 0.966;
+
 /// Least change of direction, in radians, that makes a boundary point a mesh vertex for good
 /// (a polynomial edge across it would converge algebraically only).
 pub const CORNER_TURN: f64 = 1e-3;

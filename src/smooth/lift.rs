@@ -1,6 +1,6 @@
 //! Improving where the mesh is poor, and nowhere else.
 
-use super::local::{grow, parts, quads_around, Saved};
+use super::local::{grow, parts, Saved};
 use super::optimiser::{Effort, Optimiser};
 use crate::mesh::QuadMesh;
 
@@ -15,7 +15,7 @@ pub(super) fn lift(
     effort: Effort,
     most_work: u64,
 ) -> u64 {
-    let around = quads_around(mesh);
+    let around = mesh.quads_around();
     let all: Vec<u32> = (0..mesh.quads.len() as u32).collect();
     let mut work = 0;
     let mut poor = below(optimiser, mesh, &all, floor);

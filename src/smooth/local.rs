@@ -34,7 +34,7 @@ pub(super) fn untangle_locally(
     effort: Effort,
     work: &mut u64,
 ) -> usize {
-    let around = quads_around(mesh);
+    let around = mesh.quads_around();
     let all: Vec<u32> = (0..mesh.quads.len() as u32).collect();
     let mut inverted = among(elements, mesh, &all);
     for rings in RINGS {
@@ -93,15 +93,6 @@ impl Saved {
         self.vertices.into_iter().for_each(|(v, vertex)| mesh.vertices[v as usize] = vertex);
         self.edges.into_iter().for_each(|(e, edge)| mesh.edges[e as usize] = edge);
     }
-}
-
-/// The quads at each vertex.
-pub(super) fn quads_around(mesh: &QuadMesh) -> Vec<Vec<u32>> {
-    let mut around = vec![Vec::new(); mesh.vertices.len()];
-    for (q, quad) in mesh.quads.iter().enumerate() {
-        quad.iter().for_each(|v| around[*v as usize].push(q as u32));
-    }
-    around
 }
 
 /// `quads` and `rings` rings of quads around them, ascending.
