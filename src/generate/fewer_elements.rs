@@ -9,28 +9,54 @@ use crate::refine::{self, Limits, SizeLimit};
 use crate::smooth::{Effort, Optimiser};
 use crate::stages::Stages;
 
+/// Most times that a mesh is coarsened: once smoothed as a whole it may allow what it did not before ...
+const PASSES: usize = 2;
+/// ... which is not tried above so many quads: it takes as long as the first time and brings a percent.
+const MOST_AGAIN: usize = 1500;
+
 /// `mesh`, which is valid, with as few elements as keep the scaled Jacobian at `floor` and the sizes within `limit`.
 pub(super) fn fewer_elements(
-    mesh: QuadMesh,
+    mut mesh: QuadMesh,
     optimiser: &Optimiser,
     floor: f64,
     limit: Option<SizeLimit>,
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<QuadMesh> {
-    let boundary = optimiser.boundary();
     let limits = Limits { sizes: limit, ..Limits::new(floor) };
-    let progress = watch.coarsening();
-    let mut mesh = watch
-        .run(stages, Stage::Refine, |_| refine::coarsen(mesh, boundary, optimiser, limits, &progress))?;
-    note(stages, optimiser, &mesh, "coarsen");
+    for pass in 0..PASSES {
+        if pass > 0 && mesh.quads.len() > MOST_AGAIN {
+            break;
+        }
+        let progress = watch.coarsening();
+        let fewer = watch.run(stages, Stage::Refine, |_| {
+            refine::coarsen(mesh.clone(), optimiser.boundary(), optimiser, limits, &progress)
+        })?;
+        if pass > 0 && fewer.quads.len() == mesh.quads.len() {
+            break;
+        }
+        mesh = fewer;
+        note(stages, optimiser, &mesh, "coarsen");
+        mesh = smoothed(mesh, optimiser, floor, limit, watch, stages)?;
+    }
+    Ok(mesh)
+}
+
+/// `mesh` with its poor places seen to and then smoothed as a whole, as far as nothing that holds is lost.
+fn smoothed(
+    mut mesh: QuadMesh,
+    optimiser: &Optimiser,
+    floor: f64,
+    limit: Option<SizeLimit>,
+    watch: &mut Watch,
+    stages: &mut Stages,
+) -> Result<QuadMesh> {
     let mut before = optimiser.quality(&mesh);
     if before.min_scaled_jacobian < floor {
         watch.work += watch.run(stages, Stage::Smooth, |_| Ok(optimiser.lift(&mut mesh, floor)))?;
         note(stages, optimiser, &mesh, "lift");
         before = optimiser.quality(&mesh);
     }
-    // Kept only if nothing that holds is lost.
     let mut smoother = mesh.clone();
     watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut smoother, None, Effort::Final)))?;
     let after = optimiser.quality(&smoother);

@@ -29,6 +29,8 @@ const LARGE: usize = 1500;
 const WORTH: f64 = 0.7;
 /// Multiple of coarsening's floor to which a mesh is smoothed before it.
 const AMPLE: f64 = 1.05;
+/// Share of inverted elements up to which the edges of a large mesh's are divided, too: chords are long there.
+const FEW: f64 = 1e-3;
 /// Sizes in those that the caller's function allows above which elements are divided once more after smoothing,
 /// and after coarsening.
 pub(super) const TOO_LARGE: f64 = 1.1;
@@ -108,10 +110,13 @@ pub(super) fn refine_and_smooth(
                 *marked = optimiser.error_ratio(&mesh, e as u32) > 1.0;
             }
             marked.iter_mut().zip(too_large(&mesh)).for_each(|(marked, large)| *marked |= large);
-        } else if mesh.quads.len() <= LARGE {
+        } else {
             let inverted = |q: &usize| quality.elements[*q].jacobian_ratio <= 0.0;
-            for e in (0..mesh.quads.len()).filter(inverted).flat_map(|q| mesh.quad_edges[q]) {
-                marked[e as usize] = true;
+            let inverted: Vec<usize> = (0..mesh.quads.len()).filter(inverted).collect();
+            if mesh.quads.len() <= LARGE || (inverted.len() as f64) < FEW * mesh.quads.len() as f64 {
+                for e in inverted.iter().flat_map(|q| mesh.quad_edges[*q]) {
+                    marked[e as usize] = true;
+                }
             }
         }
         if !marked.contains(&true) || mesh.quads.len() > most || watch.work > MOST_WORK {

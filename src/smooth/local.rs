@@ -5,16 +5,30 @@
 //! around them are untangled by themselves, what lies around them fixed, with more rings in turn. Parts that do
 //! not touch are problems of their own: each takes the steps that it needs and no more.
 
-use super::optimiser::{Effort, Schedule, MOST_WORK};
+use super::optimiser::{Effort, Schedule, FLATTEN_SWEEPS, MOST_WORK};
 use super::problem::Problem;
 use super::untangle::untangle;
 use crate::mesh::{Edge, QuadMesh, Vertex};
 use crate::numerics::NONE;
 
 /// Rings of quads around inverted ones, in turn.
-const RINGS: [usize; 5] = [1, 2, 4, 7, 12];
+const RINGS: [usize; 7] = [1, 2, 4, 7, 12, 20, 32];
 /// Share of the mesh above which the whole of it may as well be untangled.
 const MOST: f64 = 0.7;
+
+/// Rings from which a part that stays tangled is tried again with its vertices at the means of their neighbours:
+/// where some lie outside the domain, no step that keeps the others apart brings them back.
+const FLAT_FROM: usize = 4;
+/// Quads above which the whole mesh is not untangled for a few elements ...
+const MANY: usize = 10_000;
+/// ... and the share of them that is few. What the regularised energy does to all others first, making them round,
+/// takes more steps to come back from than so large a mesh is given.
+const FEW: f64 = 0.01;
+
+/// Whether so many inverted elements of a mesh are better left than the whole of it untangled.
+pub(super) fn few_of_many(inverted: usize, quads: usize) -> bool {
+    quads > MANY && (inverted as f64) < FEW * quads as f64
+}
 
 /// The elements that are untangled: curved or straight-sided.
 pub(super) trait Elements {
@@ -51,18 +65,25 @@ pub(super) fn untangle_locally(
                 return inverted.len();
             }
             let before = among(elements, mesh, &part);
-            let saved = Saved::of(mesh, &part);
-            let schedule = elements.schedule(effort, part.len());
-            let mut problem = elements.problem(mesh, &part);
-            untangle(&mut problem, &mut Default::default(), &schedule, work);
-            problem.store(mesh);
-            let after = among(elements, mesh, &part);
-            if after.len() > before.len() {
-                saved.restore(mesh);
-                left.extend(before);
-            } else {
-                left.extend(after);
+            let mut best = (before, Saved::of(mesh, &part));
+            for flat in [false, true] {
+                if best.0.is_empty() || (flat && rings < FLAT_FROM) {
+                    break;
+                }
+                let schedule = elements.schedule(effort, part.len());
+                let mut problem = elements.problem(mesh, &part);
+                if flat {
+                    problem.flatten(FLATTEN_SWEEPS);
+                }
+                untangle(&mut problem, &mut Default::default(), &schedule, work);
+                problem.store(mesh);
+                let after = among(elements, mesh, &part);
+                if after.len() < best.0.len() || (!flat && after.len() == best.0.len()) {
+                    best = (after, Saved::of(mesh, &part));
+                }
             }
+            best.1.restore(mesh);
+            left.extend(best.0);
         }
         inverted = left;
     }

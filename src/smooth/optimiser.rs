@@ -2,7 +2,7 @@
 
 use super::kernel::Measure;
 use super::lift::lift;
-use super::local::{untangle_locally, Elements, Saved};
+use super::local::{few_of_many, untangle_locally, Elements, Saved};
 use super::minimiser::{Lbfgs, Limits};
 use super::problem::Problem;
 use super::quality::{self, ElementQuality, Quality};
@@ -68,7 +68,7 @@ const POOR: f64 = 0.2;
 /// Work after which that ends.
 const MOST_POOR_WORK: u64 = 400_000;
 /// Sweeps of the relaxation that restarts a hopeless mesh.
-const FLATTEN_SWEEPS: usize = 200;
+pub(super) const FLATTEN_SWEEPS: usize = 200;
 
 /// What is done to an inverted mesh before it is untangled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -342,13 +342,15 @@ impl<'a> Optimiser<'a> {
         let mut problem = self.problem(reference, mesh, active, true, effort);
         let schedule = effort.schedule_for(problem.cost(1) as usize);
         let mut valid = problem.least_jacobian() > 0.0;
+        let mut few = false;
         if !valid && active.is_none() {
             untangle_straight(self.boundary, &self.linear, &self.straightness, mesh, effort, work);
-            untangle_locally(&Curved { optimiser: self, reference, effort }, mesh, effort, work);
+            let left = untangle_locally(&Curved { optimiser: self, reference, effort }, mesh, effort, work);
+            few = few_of_many(left, mesh.quads.len());
             problem = self.problem(reference, mesh, active, true, effort);
             valid = problem.least_jacobian() > 0.0;
         }
-        if !valid {
+        if !valid && !few {
             for (prepare, slide) in schedule.ways.iter().copied() {
                 if *work > MOST_WORK {
                     break;

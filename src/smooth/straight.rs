@@ -6,7 +6,7 @@
 //! vertices already are in the right order. What the curves invert again is mended locally.
 
 use super::kernel::Measure;
-use super::local::{untangle_locally, Elements};
+use super::local::{few_of_many, untangle_locally, Elements};
 use super::minimiser::{Lbfgs, Limits};
 use super::optimiser::{Effort, Schedule};
 use super::problem::Problem;
@@ -46,7 +46,8 @@ impl Elements for Straight<'_> {
 }
 
 /// Moves the interior vertices of a mesh whose straight-sided elements are inverted somewhere until none is,
-/// and straightens its interior edges; the mesh is left as it was if that fails.
+/// and straightens its interior edges. The mesh is left as it was if that fails; of a large one a few inverted
+/// elements may be left: between fixed vertices only a curve, or one vertex more, cures them.
 pub(super) fn untangle_straight(
     boundary: &Boundary,
     linear: &Reference,
@@ -65,6 +66,10 @@ pub(super) fn untangle_straight(
     let schedule = effort.schedule_for_straight(mesh.quads.len());
     let mut problem = Problem::new(boundary, linear, None, &straight, None, false, straightness);
     let mut lbfgs = Lbfgs::default();
+    if left > 0 && few_of_many(left, mesh.quads.len()) {
+        *mesh = straight;
+        return;
+    }
     if left > 0 && !untangle(&mut problem, &mut lbfgs, &schedule, work) {
         return;
     }
