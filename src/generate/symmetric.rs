@@ -249,10 +249,12 @@ fn divided(
         (small && finer.elements.len() >= found.elements.len()).then_some(finer)
     };
     let even = (options.subdivision == Subdivision::EqualError).then_some(size);
-    match even.and_then(|_| once(found, even)) {
-        Some(first) => once(&first, even).or(Some(first)),
-        None => once(found, None),
+    // First for the size alone, as the direct mesh.
+    let mut divided = once(found, None)?;
+    for _ in 0..2 {
+        divided = even.and_then(|_| once(&divided, even)).unwrap_or(divided);
     }
+    Some(divided)
 }
 
 /// Puts `candidate`, coarsened and smoothed, in the place of `best`, if it has more symmetries and is good enough; what
