@@ -88,7 +88,8 @@ pub struct Options {
     pub subdivision: Subdivision,
     /// Largest wanted element size (the longer of the mean lengths of opposite sides), in the caller's unit;
     /// `None`: no limit. The finished mesh is divided, so that halving it makes a solver's error fall as the order
-    /// promises.
+    /// promises; with at least 2π elements along the diagonal, further where strongly curved elements, or joints and
+    /// knots inside edges, would hold most of that error.
     pub max_element_size: Option<f64>,
     /// The same as a function of the place; the smaller of both holds. `None`: no limit. The layout's lengths aim
     /// at it, what is larger is divided, and coarsening makes no element larger.

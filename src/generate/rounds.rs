@@ -157,14 +157,17 @@ pub(super) fn refine_and_smooth(
     let slack = if limit.is_some() { TOO_LARGE } else { 1.0 };
     if options.element_size.is_some() || options.max_element_size.is_some() {
         let whole = SizeLimit::new(&allowed);
-        // New vertices, too, go to breaks; where that made an element too large it is divided once more.
-        for _ in 0..2 {
+        let even = coarsens && options.element_size.is_none();
+        let size = options.max_element_size.filter(|_| even).map(|size| size / boundary.frame.scale);
+        // New vertices, too, go to breaks; where that made an element too large or worse it is divided once more.
+        // First for the size alone: what vertices at breaks mend takes no elements.
+        for size in [None, size, size] {
             let before = mesh.quads.len();
             mesh = watch.run(stages, Stage::Refine, |_| {
-                whole.divide_evenly(mesh, boundary, slack, options.order, options.max_elements)
+                whole.divide_evenly(mesh, boundary, slack, options.order, options.max_elements, size)
             })?;
             if mesh.quads.len() == before {
-                break;
+                continue;
             }
             note(stages, &optimiser, &mesh, "divide");
             onto_breaks(&mut mesh, stages, watch)?;

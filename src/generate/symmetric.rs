@@ -229,7 +229,7 @@ fn with_smooth_edges(
     better.filter(kept).unwrap_or(found)
 }
 
-/// `found` divided into equal parts of at most `size`, as the direct mesh is; `None` where that loses symmetries.
+/// `found` divided into parts of at most `size`, as the direct mesh is; `None` where that loses symmetries.
 fn divided(
     found: &Symmetrised,
     size: f64,
@@ -242,10 +242,19 @@ fn divided(
     let allowed = |_: Point| size;
     let limit = SizeLimit::new(&allowed);
     let (order, most) = (options.order, options.max_elements);
-    let mesh = limit.divide_evenly(found.mesh.clone(), boundary, 1.0, order, most).ok()?;
-    let finer = with_smooth_edges(averaged(&mesh, boundary, group)?, options, optimiser, group, bar);
-    let small = !limit.too_long(&finer.mesh, 1.0 + 2.0 * ORDER_TIE).contains(&true);
-    (small && finer.elements.len() >= found.elements.len()).then_some(finer)
+    let once = |found: &Symmetrised, even: Option<f64>| {
+        let mesh = limit.divide_evenly(found.mesh.clone(), boundary, 1.0, order, most, even).ok()?;
+        let finer = with_smooth_edges(averaged(&mesh, boundary, group)?, options, optimiser, group, bar);
+        let small = !limit.too_long(&finer.mesh, 1.0 + 2.0 * ORDER_TIE).contains(&true);
+        (small && finer.elements.len() >= found.elements.len()).then_some(finer)
+    };
+    let even = (options.subdivision == Subdivision::EqualError).then_some(size);
+    // First for the size alone, as the direct mesh.
+    let mut divided = once(found, None)?;
+    for _ in 0..2 {
+        divided = even.and_then(|_| once(&divided, even)).unwrap_or(divided);
+    }
+    Some(divided)
 }
 
 /// Puts `candidate`, coarsened and smoothed, in the place of `best`, if it has more symmetries and is good enough; what

@@ -238,3 +238,11 @@ pub const SYMMETRY_ANGLE: f64 = 1e-6;
 /// Distance, relative to the domain's diagonal, by which a boundary node may be off its mirror image: less is
 /// rounding, and the exact point stays.
 pub const SYMMETRY_ROUNDING: f64 = 1e-14;
+
+/// Root mean square error of waves of amplitude 1 below which no element is divided for them: no solver asks for
+/// less, and the elements' places are not much more exact.
+pub const LEAST_WAVE_ERROR: f64 = 1e-10;
+
+/// Share by which two divisions may differ in worth and still be made together: what is symmetric only to rounding,
+/// or to what smoothing leaves, must be divided alike.
+pub const EQUAL_WORTH: f64 = 1e-3;

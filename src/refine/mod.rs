@@ -10,10 +10,12 @@
 //!
 //! [`coarsen`] takes a valid mesh that is finer than it need be and removes chords and diagonals,
 //! re-optimising round each, while the tolerance and the quality hold. [`OnChain`] moves boundary vertices to where
-//! the curve is less smooth.
+//! the curve is less smooth. [`SizeLimit`] divides what is larger than asked for, and further where elements' maps
+//! follow waves worse than their size promises.
 
 mod chords;
 mod coarsen;
+mod coons;
 mod divide;
 mod halving;
 mod live;
@@ -22,6 +24,7 @@ mod merge;
 mod patch;
 mod pieces;
 mod placement;
+mod resolve;
 mod respace;
 mod size_limit;
 mod split;
@@ -34,6 +37,7 @@ mod thin;
 mod to_breaks;
 mod trial;
 mod valence;
+mod waves;
 
 pub use coarsen::coarsen;
 pub use divide::divide_chords;

@@ -1,6 +1,7 @@
 //! The largest element size that the caller allows, and the division of what is larger.
 
 use super::divide::{chord_parts, divide_chords};
+use super::resolve::resolved;
 use super::split_chords;
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
@@ -68,6 +69,9 @@ impl<'a> SizeLimit<'a> {
     /// Divides chords into as many equal parts as it takes for no quad to be longer than `slack` times what is
     /// allowed. For sizes that vary little: all of a chord is divided alike. `order` as for [`split_chords`].
     ///
+    /// With a `size`, the same everywhere, chords get more parts where their elements' maps follow solutions worse
+    /// than squares of that size do.
+    ///
     /// # Errors
     /// [`Error::Layout`] when the mesh is defective, or would have more than `most` quads.
     pub fn divide_evenly(
@@ -77,6 +81,7 @@ impl<'a> SizeLimit<'a> {
         slack: f64,
         order: usize,
         most: usize,
+        size: Option<f64>,
     ) -> Result<QuadMesh> {
         let slack = slack * (1.0 + ORDER_TIE);
         let mut wanted = vec![1u32; mesh.edges.len()];
@@ -110,6 +115,13 @@ impl<'a> SizeLimit<'a> {
             let divided = divide_chords(&mesh, boundary, &parts, order)?;
             ratios = self.ratios(&divided);
             finer = Some(divided);
+        }
+        let parts = chord_parts(&mesh, &wanted);
+        if let Some(size) = size {
+            let more = resolved(&mesh, boundary, &parts, order, size, most);
+            if more != parts {
+                finer = Some(divide_chords(&mesh, boundary, &more, order)?);
+            }
         }
         Ok(finer.unwrap_or(mesh))
     }
