@@ -22,7 +22,6 @@ mod lift;
 mod local;
 mod minimiser;
 mod optimiser;
-mod pair;
 mod problem;
 mod quality;
 mod reference;
