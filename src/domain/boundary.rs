@@ -118,12 +118,16 @@ impl Chain {
         i
     }
 
-    /// The same, searched from interval `i` in ever longer strides, then by bisection.
+    /// The same, looked for where the length of interval `i` leads to expect it (tables are even but for slow
+    /// changes), then around there in ever longer strides, then by bisection.
     #[inline(always)]
     pub(crate) fn interval_from(&self, i: usize, s: f64) -> usize {
         let table = &self.samples;
         let last = table.len() - 2;
-        let (mut i, mut stride) = (i.min(last), 1);
+        let from = i.min(last);
+        let steps = (s - table[from].s) / (table[from + 1].s - table[from].s);
+        // Out of range saturates, as does what an interval of no length leads to expect.
+        let (mut i, mut stride) = (((from as f64 + steps) as usize).min(last), 1);
         if table[i].s > s {
             while i > 0 && table[i].s > s {
                 i = i.saturating_sub(stride);

@@ -6,7 +6,9 @@
 //! Integrals stop at the curve's breaks and use at least 24 points an edge: fewer underestimate the
 //! error at a small kink by a fifth.
 
+use super::chain_error::SquaredError;
 use crate::domain::{Boundary, Chain, Frame, Span};
+use crate::numerics::interpolation::unit_parameters;
 use crate::numerics::{GaussLegendre, GaussLobatto, Interpolation, Modal, Point, Vector};
 use crate::options::{Norm, Options};
 use nalgebra::DMatrix;
@@ -49,14 +51,15 @@ const EDGE_POINTS: usize = 24;
 /// Points a smooth piece gets beyond its share of the edge's.
 const PIECE_POINTS: usize = 4;
 /// Most nodes an edge can have.
-const MAX_NODES: usize = Options::MAX_ORDER + 1;
+pub(super) const MAX_NODES: usize = Options::MAX_ORDER + 1;
 
 /// Measures boundary edges of one order in one norm; build once, use for many edges.
 #[derive(Debug, Clone)]
 pub struct BoundaryError {
     pub tolerance: BoundaryTolerance,
-    /// Gauss-Lobatto nodes of an edge.
+    /// Gauss-Lobatto nodes of an edge, also as parameters in [0, 1].
     lobatto: GaussLobatto,
+    parameters: Vec<f64>,
     modal: Modal,
     /// Gauss rules, by number of points.
     rules: Vec<GaussLegendre>,
@@ -72,12 +75,29 @@ impl BoundaryError {
         let most = EDGE_POINTS.max(order + 4) + PIECE_POINTS;
         let rules: Vec<_> = (0..=most).map(GaussLegendre::new).collect();
         let differentiation = Interpolation::new(lobatto.nodes.clone()).differentiation();
-        BoundaryError { tolerance, modal: Modal::new(&lobatto), lobatto, rules, differentiation }
+        let parameters = unit_parameters(&lobatto.nodes);
+        BoundaryError { tolerance, modal: Modal::new(&lobatto), lobatto, parameters, rules, differentiation }
     }
 
     /// Gauss-Lobatto nodes in [-1, 1] of an edge.
     pub fn reference_nodes(&self) -> &[f64] {
         &self.lobatto.nodes
+    }
+
+    pub(super) fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    pub(super) fn modal(&self) -> &Modal {
+        &self.modal
+    }
+
+    /// The quadrature of a piece of an edge, this share of it.
+    #[inline(always)]
+    pub(super) fn rule(&self, share: f64) -> &GaussLegendre {
+        let most = self.rules.len() - 1;
+        let points = ((share * (most - PIECE_POINTS) as f64).ceil() as usize + PIECE_POINTS).min(most);
+        &self.rules[points]
     }
 
     /// Error of the edge over `span`, in the norm's unit in the canonical frame.
@@ -92,16 +112,23 @@ impl BoundaryError {
 
     /// Error of the edge from arc length `start` to `end` of `chain`.
     pub fn of_chain(&self, chain: &Chain, start: f64, end: f64) -> f64 {
+        let length = end - start;
+        let mut breaks = Vec::new();
+        breaks_within(chain, start, end, &mut breaks);
+        if self.tolerance.norm == Norm::L2 {
+            // Not so for an edge without extent or with a NaN.
+            let positive = length > 0.0;
+            let squared = SquaredError { error: self, chain, start, length, breaks: &breaks };
+            return if positive { squared.value().sqrt() } else { f64::INFINITY };
+        }
         let mut nodes = [Point::origin(); MAX_NODES];
         let nodes = &mut nodes[..self.lobatto.nodes.len()];
         let mut hint = 0;
-        for (node, xi) in nodes.iter_mut().zip(&self.lobatto.nodes) {
-            *node = chain.evaluate_from(start + 0.5 * (1.0 + xi) * (end - start), &mut hint).0;
+        for (node, t) in nodes.iter_mut().zip(&self.parameters) {
+            *node = chain.evaluate_from(start + t * length, &mut hint).0;
         }
-        let mut breaks = Vec::new();
-        breaks_within(chain, start, end, &mut breaks);
         let curve = |s: f64| Ok::<_, std::convert::Infallible>(chain.evaluate_from(start + s, &mut hint));
-        match self.measure(nodes, end - start, &breaks, curve) {
+        match self.measure(nodes, length, &breaks, curve) {
             Ok(e) => e,
             Err(never) => match never {},
         }
@@ -125,14 +152,11 @@ impl BoundaryError {
         if !positive {
             return Ok(f64::INFINITY);
         }
-        let most = self.rules.len() - 1;
         let mut accumulated = Accumulated::new(self.tolerance.norm, length);
         let edge = self.edge(nodes, length);
         let mut from = 0.0;
         for to in breaks.iter().copied().chain([length]) {
-            let share = (to - from) / length;
-            let points = ((share * (most - PIECE_POINTS) as f64).ceil() as usize + PIECE_POINTS).min(most);
-            let rule = &self.rules[points];
+            let rule = self.rule((to - from) / length);
             for (xi, weight) in rule.nodes.iter().zip(&rule.weights) {
                 let s = from + 0.5 * (1.0 + xi) * (to - from);
                 let (x, slope) = edge.at(2.0 * s / length - 1.0);

@@ -52,6 +52,21 @@ impl Modal {
         }
         next
     }
+
+    /// The same at several places: x, then y.
+    #[inline(always)]
+    pub fn values<const L: usize>(&self, modes: &[Vector], x: &[f64; L]) -> [[f64; L]; 2] {
+        let (mut next, mut after) = ([[0.0; L]; 2], [[0.0; L]; 2]);
+        for ((c, up), down) in modes.iter().zip(&self.up).zip(&self.down[1..]).rev() {
+            for axis in 0..2 {
+                for k in 0..L {
+                    let value = c[axis] + next[axis][k] * (up * x[k]) - after[axis][k] * down;
+                    (next[axis][k], after[axis][k]) = (value, next[axis][k]);
+                }
+            }
+        }
+        next
+    }
 }
 
 #[cfg(test)]
@@ -72,6 +87,8 @@ mod tests {
             for x in [-1.0, -0.83, -0.2, 0.0, 0.41, 0.999, 1.0] {
                 let gap = (modal.value(&modes, x) - nodal.point(&values, x).coords).norm();
                 assert!(gap < 1e-14, "order {order} at {x}: {gap}");
+                let both = modal.values(&modes, &[x, -x]).map(|v| v[0]);
+                assert_eq!(both, <[f64; 2]>::from(modal.value(&modes, x)));
             }
         }
     }

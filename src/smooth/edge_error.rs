@@ -2,7 +2,7 @@
 //! to the two ends, and the barrier that keeps it below the tolerance.
 
 use super::reference::Reference;
-use super::walk::{walk, Four, FOUR};
+use crate::domain::walk::{walk, Four, FOUR};
 use crate::domain::Chain;
 use crate::numerics::Vector;
 

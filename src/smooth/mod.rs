@@ -28,7 +28,6 @@ mod reference;
 mod straight;
 mod straightness;
 mod untangle;
-mod walk;
 
 pub use laplacian::equal_spacing;
 pub use optimiser::{Aim, Effort, Optimiser, Outcome};

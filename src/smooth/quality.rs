@@ -2,7 +2,7 @@
 
 use super::reference::{bubble, Reference};
 use super::straightness::Straightness;
-use super::walk::{walk, FOUR};
+use crate::domain::walk::{walk, FOUR};
 use crate::domain::Boundary;
 use crate::mesh::QuadMesh;
 use crate::numerics::{cross, Vector};

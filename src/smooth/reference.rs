@@ -1,6 +1,6 @@
 //! Tables on the reference edge: what turns an edge's unknowns into samples of its curve.
 
-use super::walk::FOUR;
+use crate::domain::walk::FOUR;
 use crate::numerics::{GaussLegendre, GaussLobatto, Interpolation};
 
 /// Most samples per direction: at high order the shapes that the optimiser can give an interior edge

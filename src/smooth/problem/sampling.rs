@@ -1,10 +1,10 @@
 //! From unknowns to sampled edges: forward.
 
 use super::{Freedom, Problem, Shape};
+use crate::domain::walk::{walk, Four, FOUR};
 use crate::mesh::QuadMesh;
 use crate::numerics::{Vector, NONE};
 use crate::smooth::kernel::Lanes;
-use crate::smooth::walk::{walk, Four, FOUR};
 
 impl Problem<'_> {
     /// Samples all moving edges at the unknowns `x`; with `fixed` also the others, whose bubbles are

@@ -1,14 +1,14 @@
 //! Evaluation of a chain at many ascending arc lengths: one search, then steps along the table, four points at
 //! once.
 
-use crate::domain::Chain;
+use super::boundary::Chain;
 
 /// Points evaluated at once.
-pub(super) const FOUR: usize = 4;
+pub(crate) const FOUR: usize = 4;
 
 /// Points and derivatives of a chain at four arc lengths: x, y and their derivatives.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Four {
+pub(crate) struct Four {
     pub point: [[f64; FOUR]; 2],
     pub slope: [[f64; FOUR]; 2],
 }
@@ -17,7 +17,7 @@ pub(super) struct Four {
 /// among the parameters, which ascend in [0, 1]; a last four may be incomplete and ends in copies of its last.
 /// Same values as [`Chain::evaluate`]. `hint` is the interval of the table that the walk began in the last time, or 0.
 #[inline(always)]
-pub(super) fn walk(
+pub(crate) fn walk(
     chain: &Chain,
     [start, length]: [f64; 2],
     hint: &mut usize,
