@@ -25,6 +25,8 @@ RADII = (0.18, 0.28)
 OFF = 0.07
 # Share of its length by which the middle of a coast's piece is moved off the line at each halving.
 ROUGHNESS = 0.18
+# Least angle between two pieces that meet, in radians: sharper ones are cusps, which are refused.
+SHARP = 0.4
 
 
 def plate(holes):
@@ -45,6 +47,12 @@ def crosses(a, b, c, d):
         return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
 
     return side(a, b, c) * side(a, b, d) <= 0 and side(c, d, a) * side(c, d, b) <= 0
+
+
+def angle(a, b, c):
+    """Between the pieces that meet at b."""
+    turn = math.atan2(a[1] - b[1], a[0] - b[0]) - math.atan2(c[1] - b[1], c[0] - b[0])
+    return abs(math.remainder(turn, 2 * math.pi))
 
 
 class Cells:
@@ -93,12 +101,14 @@ def coast(points):
                 continue
             cells.remove(a, b)
             shift = source.gauss(0, ROUGHNESS)
+            before, after = (finer[-2] if k else line[-1]), (finer[1] if k + 1 == len(line) else line[(k + 2) % len(line)])
             for share in (shift, 0.5 * shift, 0.0):
                 middle = (
                     round(0.5 * (a[0] + b[0]) - share * (b[1] - a[1]), 9),
                     round(0.5 * (a[1] + b[1]) + share * (b[0] - a[0]), 9),
                 )
-                if cells.free(a, middle) and cells.free(middle, b):
+                blunt = min(angle(before, a, middle), angle(a, middle, b), angle(middle, b, after)) > SHARP
+                if blunt and cells.free(a, middle) and cells.free(middle, b):
                     break
             cells.add(a, middle)
             cells.add(middle, b)
@@ -122,8 +132,8 @@ def measure(binary, file, folder, limit):
             break
         if time.monotonic() - started > limit:
             child.kill()
-            os.wait4(child.pid, 0)
-            return limit, None, {"status": "time limit"}
+            usage = os.wait4(child.pid, 0)[2]
+            return usage.ru_utime + usage.ru_stime, usage.ru_maxrss, {"status": "time limit"}
         time.sleep(0.02)
     child.returncode = os.waitstatus_to_exitcode(status)
     known = json.loads(stats.read_text()) if stats.exists() else {"status": f"exit {child.returncode}"}
