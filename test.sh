@@ -104,6 +104,9 @@ scratch=$(mktemp -d)
 )
 rm -r "$scratch"
 
+step "instructions for the Gingerbread man"
+benches/speed/count.sh "$binary"
+
 step "package"
 cargo package --locked --allow-dirty --no-verify --quiet
 say "ok"

@@ -97,9 +97,6 @@ pub struct Boundary {
     pub diagonal: f64,
 }
 
-/// Intervals looked at before a search in [`Chain::evaluate_from`].
-const HINT_REACH: usize = 8;
-
 impl Chain {
     /// `s` brought into [0, length]: modulo the length on a closed chain, clamped on an open one.
     pub fn wrap(&self, s: f64) -> f64 {
@@ -121,6 +118,41 @@ impl Chain {
         i
     }
 
+    /// The same, looked for where the length of interval `i` leads to expect it (tables are even but for slow
+    /// changes), then around there in ever longer strides, then by bisection.
+    #[inline(always)]
+    pub(crate) fn interval_from(&self, i: usize, s: f64) -> usize {
+        let table = &self.samples;
+        let last = table.len() - 2;
+        let from = i.min(last);
+        let steps = (s - table[from].s) / (table[from + 1].s - table[from].s);
+        // Out of range saturates, as does what an interval of no length leads to expect.
+        let (mut i, mut stride) = (((from as f64 + steps) as usize).min(last), 1);
+        if table[i].s > s {
+            while i > 0 && table[i].s > s {
+                i = i.saturating_sub(stride);
+                stride *= 2;
+            }
+            i += table[i + 1..(i + stride).min(last + 1)].partition_point(|x| x.s <= s);
+        } else {
+            while i < last {
+                let probe = (i + stride).min(last);
+                if table[probe].s <= s {
+                    i = probe;
+                    stride *= 2;
+                } else {
+                    i += table[i + 1..probe].partition_point(|x| x.s <= s);
+                    break;
+                }
+            }
+        }
+        // The double samples at joints bound an interval of no length.
+        while i > 0 && table[i + 1].s <= table[i].s {
+            i -= 1;
+        }
+        i
+    }
+
     /// The two table entries around `s`, already wrapped; they lie on one segment.
     pub(crate) fn around(&self, s: f64) -> (&Sample, &Sample) {
         let i = self.interval(s);
@@ -134,13 +166,10 @@ impl Chain {
     }
 
     /// The same as [`Chain::evaluate`] for a walk along the chain: `hint` is where the last point was
-    /// found (0 at first), and a point shortly after it is found without a search.
+    /// found (0 at first), and a point near it is found in a few steps.
     pub fn evaluate_from(&self, s: f64, hint: &mut usize) -> (Point, Vector) {
         let s = self.wrap(s);
-        let holds = |i: usize| self.samples[i].s <= s && s < self.samples[i + 1].s;
-        let last = self.samples.len() - 2;
-        let near = (*hint).min(last)..=hint.saturating_add(HINT_REACH).min(last);
-        *hint = near.into_iter().find(|&i| holds(i)).unwrap_or_else(|| self.interval(s));
+        *hint = self.interval_from(*hint, s);
         self.evaluate_in(*hint, s)
     }
 

@@ -33,6 +33,7 @@ mod segment;
 mod segment_table;
 mod spline;
 mod tables;
+pub(crate) mod walk;
 
 pub use arc::EllipticArc;
 pub use bezier::Bezier;

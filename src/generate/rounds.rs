@@ -87,7 +87,7 @@ pub(super) fn refine_and_smooth(
     let floor = options.quality_floor * scaled_jacobian_ceiling(boundary);
     // What coarsening changes again need not be better than it asks for.
     let coarsens = options.subdivision == Subdivision::EqualError;
-    let aim = coarsens.then_some(Aim { enough: AMPLE * floor, hopeless: f64::NEG_INFINITY });
+    let aim = coarsens.then(|| Aim::at(AMPLE * floor));
     for round in 0..ROUNDS {
         // Step 8: smooth, and untangle if need be.
         let holds = |mesh: &QuadMesh| {

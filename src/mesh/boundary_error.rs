@@ -6,8 +6,10 @@
 //! Integrals stop at the curve's breaks and use at least 24 points an edge: fewer underestimate the
 //! error at a small kink by a fifth.
 
+use super::chain_error::SquaredError;
 use crate::domain::{Boundary, Chain, Frame, Span};
-use crate::numerics::{GaussLegendre, GaussLobatto, Interpolation, Point, Vector};
+use crate::numerics::interpolation::unit_parameters;
+use crate::numerics::{GaussLegendre, GaussLobatto, Interpolation, Modal, Point, Vector};
 use crate::options::{Norm, Options};
 use nalgebra::DMatrix;
 
@@ -49,18 +51,18 @@ const EDGE_POINTS: usize = 24;
 /// Points a smooth piece gets beyond its share of the edge's.
 const PIECE_POINTS: usize = 4;
 /// Most nodes an edge can have.
-const MAX_NODES: usize = Options::MAX_ORDER + 1;
+pub(super) const MAX_NODES: usize = Options::MAX_ORDER + 1;
 
 /// Measures boundary edges of one order in one norm; build once, use for many edges.
 #[derive(Debug, Clone)]
 pub struct BoundaryError {
     pub tolerance: BoundaryTolerance,
-    /// Gauss-Lobatto nodes of an edge.
-    lobatto: Interpolation,
+    /// Gauss-Lobatto nodes of an edge, also as parameters in [0, 1].
+    lobatto: GaussLobatto,
+    parameters: Vec<f64>,
+    modal: Modal,
     /// Gauss rules, by number of points.
     rules: Vec<GaussLegendre>,
-    /// Values and d/dξ at the largest rule's points from an edge's nodes: for edges without breaks.
-    whole: [DMatrix<f64>; 2],
     differentiation: DMatrix<f64>,
 }
 
@@ -68,19 +70,34 @@ impl BoundaryError {
     /// Tables for edges under `tolerance` (its order in 1..=32).
     pub fn new(tolerance: BoundaryTolerance) -> Self {
         let order = tolerance.order.clamp(1, Options::MAX_ORDER);
-        let lobatto = Interpolation::new(GaussLobatto::new(order).nodes);
+        let lobatto = GaussLobatto::new(order);
         // The squared error is about of degree 2N + 2 on a smooth edge.
         let most = EDGE_POINTS.max(order + 4) + PIECE_POINTS;
         let rules: Vec<_> = (0..=most).map(GaussLegendre::new).collect();
-        let nodes = &rules[most].nodes;
-        let whole = [lobatto.matrix(nodes), lobatto.derivative_matrix(nodes)];
-        let differentiation = lobatto.differentiation();
-        BoundaryError { tolerance, lobatto, rules, whole, differentiation }
+        let differentiation = Interpolation::new(lobatto.nodes.clone()).differentiation();
+        let parameters = unit_parameters(&lobatto.nodes);
+        BoundaryError { tolerance, modal: Modal::new(&lobatto), lobatto, parameters, rules, differentiation }
     }
 
     /// Gauss-Lobatto nodes in [-1, 1] of an edge.
     pub fn reference_nodes(&self) -> &[f64] {
         &self.lobatto.nodes
+    }
+
+    pub(super) fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    pub(super) fn modal(&self) -> &Modal {
+        &self.modal
+    }
+
+    /// The quadrature of a piece of an edge, this share of it.
+    #[inline(always)]
+    pub(super) fn rule(&self, share: f64) -> &GaussLegendre {
+        let most = self.rules.len() - 1;
+        let points = ((share * (most - PIECE_POINTS) as f64).ceil() as usize + PIECE_POINTS).min(most);
+        &self.rules[points]
     }
 
     /// Error of the edge over `span`, in the norm's unit in the canonical frame.
@@ -95,16 +112,23 @@ impl BoundaryError {
 
     /// Error of the edge from arc length `start` to `end` of `chain`.
     pub fn of_chain(&self, chain: &Chain, start: f64, end: f64) -> f64 {
+        let length = end - start;
+        let mut breaks = Vec::new();
+        breaks_within(chain, start, end, &mut breaks);
+        if self.tolerance.norm == Norm::L2 {
+            // Not so for an edge without extent or with a NaN.
+            let positive = length > 0.0;
+            let squared = SquaredError { error: self, chain, start, length, breaks: &breaks };
+            return if positive { squared.value().sqrt() } else { f64::INFINITY };
+        }
         let mut nodes = [Point::origin(); MAX_NODES];
         let nodes = &mut nodes[..self.lobatto.nodes.len()];
         let mut hint = 0;
-        for (node, xi) in nodes.iter_mut().zip(&self.lobatto.nodes) {
-            *node = chain.evaluate_from(start + 0.5 * (1.0 + xi) * (end - start), &mut hint).0;
+        for (node, t) in nodes.iter_mut().zip(&self.parameters) {
+            *node = chain.evaluate_from(start + t * length, &mut hint).0;
         }
-        let mut breaks = Vec::new();
-        breaks_within(chain, start, end, &mut breaks);
         let curve = |s: f64| Ok::<_, std::convert::Infallible>(chain.evaluate_from(start + s, &mut hint));
-        match self.measure(nodes, end - start, &breaks, curve) {
+        match self.measure(nodes, length, &breaks, curve) {
             Ok(e) => e,
             Err(never) => match never {},
         }
@@ -128,97 +152,85 @@ impl BoundaryError {
         if !positive {
             return Ok(f64::INFINITY);
         }
-        let most = self.rules.len() - 1;
         let mut accumulated = Accumulated::new(self.tolerance.norm, length);
-        if breaks.is_empty() {
-            let rule = &self.rules[most];
-            for (q, (xi, weight)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
-                let (mut x, mut slope) = (Vector::zeros(), Vector::zeros());
-                for (i, node) in nodes.iter().enumerate() {
-                    x += node.coords * self.whole[0][(q, i)];
-                    slope += node.coords * self.whole[1][(q, i)];
-                }
-                let s = 0.5 * (1.0 + xi) * length;
+        let edge = self.edge(nodes, length);
+        let mut from = 0.0;
+        for to in breaks.iter().copied().chain([length]) {
+            let rule = self.rule((to - from) / length);
+            for (xi, weight) in rule.nodes.iter().zip(&rule.weights) {
+                let s = from + 0.5 * (1.0 + xi) * (to - from);
+                let (x, slope) = edge.at(2.0 * s / length - 1.0);
                 let (p, d) = curve(s)?;
-                accumulated.add(s, 0.5 * weight * length, p.coords - x, d - slope * (2.0 / length));
+                accumulated.add(s, 0.5 * weight * (to - from), p.coords - x, d - slope);
             }
-        } else {
-            let slopes = self.node_slopes(nodes, length);
-            let ends = breaks.iter().copied().chain([length]);
-            let mut from = 0.0;
-            for to in ends {
-                let share = (to - from) / length;
-                let points =
-                    ((share * (most - PIECE_POINTS) as f64).ceil() as usize + PIECE_POINTS).min(most);
-                let rule = &self.rules[points];
-                for (xi, weight) in rule.nodes.iter().zip(&rule.weights) {
-                    let s = from + 0.5 * (1.0 + xi) * (to - from);
-                    let (x, slope) = self.edge_at(nodes, &slopes, 2.0 * s / length - 1.0);
-                    let (p, d) = curve(s)?;
-                    accumulated.add(s, 0.5 * weight * (to - from), p.coords - x, d - slope);
-                }
-                from = to;
-            }
+            from = to;
         }
         if self.tolerance.norm == Norm::Max {
-            return self.refine_maximum(accumulated, nodes, length, curve);
+            return refine_maximum(accumulated, &edge, length, curve);
         }
         Ok(accumulated.sum.sqrt())
     }
 
-    /// d/ds of the polynomial edge at its nodes.
-    fn node_slopes(&self, nodes: &[Point], length: f64) -> [Vector; MAX_NODES] {
-        let mut slopes = [Vector::zeros(); MAX_NODES];
+    /// The polynomial edge through `nodes`; its slope only where the norm looks at it.
+    fn edge(&self, nodes: &[Point], length: f64) -> PolynomialEdge<'_> {
+        let n = nodes.len();
+        let mut edge =
+            PolynomialEdge { modal: &self.modal, n, value: [Vector::zeros(); MAX_NODES], slope: None };
+        self.modal.modes(nodes, &mut edge.value[..n]);
         if self.tolerance.norm == Norm::H1 {
-            for (i, slope) in slopes.iter_mut().enumerate().take(nodes.len()) {
+            let mut slopes = [Point::origin(); MAX_NODES];
+            for (i, slope) in slopes.iter_mut().enumerate().take(n) {
                 for (j, node) in nodes.iter().enumerate() {
                     *slope += node.coords * (self.differentiation[(i, j)] * 2.0 / length);
                 }
             }
+            let mut modes = [Vector::zeros(); MAX_NODES];
+            self.modal.modes(&slopes[..n], &mut modes[..n]);
+            edge.slope = Some(modes);
         }
-        slopes
+        edge
     }
+}
 
-    /// The polynomial edge and its d/ds at reference parameter `xi`.
-    fn edge_at(&self, nodes: &[Point], slopes: &[Vector], xi: f64) -> (Vector, Vector) {
-        let mut basis = [0.0; MAX_NODES];
-        let basis = &mut basis[..nodes.len()];
-        self.lobatto.basis(xi, basis);
-        let (mut x, mut slope) = (Vector::zeros(), Vector::zeros());
-        for ((b, node), v) in basis.iter().zip(nodes).zip(slopes) {
-            x += node.coords * *b;
-            slope += v * *b;
-        }
-        (x, slope)
-    }
+/// The polynomial edge and its d/ds by Legendre coefficients.
+struct PolynomialEdge<'a> {
+    modal: &'a Modal,
+    n: usize,
+    value: [Vector; MAX_NODES],
+    slope: Option<[Vector; MAX_NODES]>,
+}
 
-    /// The largest distance, by a ternary search between the neighbours of the largest sample.
-    fn refine_maximum<E>(
-        &self,
-        found: Accumulated,
-        nodes: &[Point],
-        length: f64,
-        mut curve: impl FnMut(f64) -> Result<(Point, Vector), E>,
-    ) -> Result<f64, E> {
-        let mut distance = |s: f64| -> Result<f64, E> {
-            let x = self.edge_at(nodes, &[Vector::zeros(); MAX_NODES], 2.0 * s / length - 1.0).0;
-            Ok((curve(s)?.0.coords - x).norm())
-        };
-        let reach = length / EDGE_POINTS as f64;
-        let (mut a, mut b) = ((found.place - reach).max(0.0), (found.place + reach).min(length));
-        let mut largest = found.sum;
-        for _ in 0..MAXIMUM_STEPS {
-            let (l, r) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
-            let (fl, fr) = (distance(l)?, distance(r)?);
-            largest = largest.max(fl).max(fr);
-            if fl > fr {
-                b = r;
-            } else {
-                a = l;
-            }
-        }
-        Ok(largest)
+impl PolynomialEdge<'_> {
+    /// Point and slope (if it is known, else 0) at reference parameter `xi`.
+    fn at(&self, xi: f64) -> (Vector, Vector) {
+        let slope = self.slope.as_ref().map_or_else(Vector::zeros, |s| self.modal.value(&s[..self.n], xi));
+        (self.modal.value(&self.value[..self.n], xi), slope)
     }
+}
+
+/// The largest distance, by a ternary search between the neighbours of the largest sample.
+fn refine_maximum<E>(
+    found: Accumulated,
+    edge: &PolynomialEdge,
+    length: f64,
+    mut curve: impl FnMut(f64) -> Result<(Point, Vector), E>,
+) -> Result<f64, E> {
+    let mut distance =
+        |s: f64| -> Result<f64, E> { Ok((curve(s)?.0.coords - edge.at(2.0 * s / length - 1.0).0).norm()) };
+    let reach = length / EDGE_POINTS as f64;
+    let (mut a, mut b) = ((found.place - reach).max(0.0), (found.place + reach).min(length));
+    let mut largest = found.sum;
+    for _ in 0..MAXIMUM_STEPS {
+        let (l, r) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
+        let (fl, fr) = (distance(l)?, distance(r)?);
+        largest = largest.max(fl).max(fr);
+        if fl > fr {
+            b = r;
+        } else {
+            a = l;
+        }
+    }
+    Ok(largest)
 }
 
 /// Each step leaves 2/3 of the interval; the maximum is flat, so 6 steps leave an error below 1 %.

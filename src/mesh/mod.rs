@@ -21,6 +21,7 @@ mod bernstein_proof;
 mod boundary_error;
 mod bubbles;
 mod ceiling;
+mod chain_error;
 mod conformity;
 mod connectivity;
 mod dense;

@@ -4,6 +4,7 @@
 pub mod bernstein;
 pub mod gauss_lobatto;
 pub mod interpolation;
+pub mod modal;
 pub mod quadrature;
 pub mod sparse;
 pub mod tolerances;
@@ -11,6 +12,7 @@ pub mod transfinite;
 
 pub use gauss_lobatto::{legendre, GaussLobatto};
 pub use interpolation::Interpolation;
+pub use modal::Modal;
 pub use quadrature::GaussLegendre;
 pub use transfinite::coons_map;
 

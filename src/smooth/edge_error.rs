@@ -2,7 +2,7 @@
 //! to the two ends, and the barrier that keeps it below the tolerance.
 
 use super::reference::Reference;
-use super::walk::walk;
+use crate::domain::walk::{walk, Four, FOUR};
 use crate::domain::Chain;
 use crate::numerics::Vector;
 
@@ -18,37 +18,69 @@ pub(super) struct SquaredError {
 }
 
 /// For the edge that follows `chain` from `start` over `length`, with its nodes and the curve's
-/// derivatives there.
+/// derivatives there; `hint` as for [`walk`].
+#[inline(always)]
 pub(super) fn squared_error(
     reference: &Reference,
     chain: &Chain,
-    start: f64,
-    length: f64,
+    [start, length]: [f64; 2],
+    hint: &mut usize,
     nodes: &[[Vector; 2]],
 ) -> SquaredError {
     let n = nodes.len();
-    let (mut sum, mut slope) = (0.0, [0.0; 2]);
-    walk(chain, start, length, &reference.error_points, |q, point, tangent| {
-        let row = &reference.error_lagrange[q * n..(q + 1) * n];
-        let (mut gap, mut at_start, mut at_end) = (point, Vector::zeros(), Vector::zeros());
-        for ((m, [p, v]), x) in row.iter().zip(nodes).zip(&reference.nodes) {
-            gap -= p * *m;
-            at_start += v * (m * (1.0 - x));
-            at_end += v * (m * x);
-        }
-        let (w, t) = (reference.error_weights[q], reference.error_points[q]);
-        sum += w * gap.norm_squared();
-        slope[0] += w * gap.dot(&(tangent * (1.0 - t) - at_start));
-        slope[1] += w * gap.dot(&(tangent * t - at_end));
-    });
-    SquaredError {
-        value: length * sum,
-        slope: [2.0 * length * slope[0] - sum, 2.0 * length * slope[1] + sum],
-    }
+    let (mut sum, mut at_start, mut at_end) = ([0.0; FOUR], [0.0; FOUR], [0.0; FOUR]);
+    walk(
+        chain,
+        [start, length],
+        hint,
+        &reference.error_points,
+        #[inline(always)]
+        |first, four: Four| {
+            // Rows of four points: values of each node's polynomial, and the same times the node's parameter.
+            let row = first * n..(first + FOUR) * n;
+            let (values, shifted) = (&reference.error_lagrange[row.clone()], &reference.error_shifted[row]);
+            let mut w = [0.0; FOUR];
+            w.copy_from_slice(&reference.error_weights[first..first + FOUR]);
+            let mut t = [0.0; FOUR];
+            t.copy_from_slice(&reference.error_points[first..first + FOUR]);
+            let mut along = [0.0; FOUR];
+            let mut ahead = [0.0; FOUR];
+            for axis in 0..2 {
+                let (mut gap, mut all, mut end) = (four.point[axis], [0.0; FOUR], [0.0; FOUR]);
+                for (([p, v], m), mx) in
+                    nodes.iter().zip(values.chunks_exact(FOUR)).zip(shifted.chunks_exact(FOUR))
+                {
+                    for k in 0..FOUR {
+                        gap[k] -= p[axis] * m[k];
+                        all[k] += v[axis] * m[k];
+                        end[k] += v[axis] * mx[k];
+                    }
+                }
+                for k in 0..FOUR {
+                    sum[k] += w[k] * gap[k] * gap[k];
+                    // With the start moves (1 − t) of a point, with the end t.
+                    along[k] += gap[k] * (four.slope[axis][k] - all[k]);
+                    ahead[k] += gap[k] * (four.slope[axis][k] * t[k] - end[k]);
+                }
+            }
+            for k in 0..FOUR {
+                at_end[k] += w[k] * ahead[k];
+                at_start[k] += w[k] * (along[k] - ahead[k]);
+            }
+        },
+    );
+    let (sum, start, end) = (total(sum), total(at_start), total(at_end));
+    SquaredError { value: length * sum, slope: [2.0 * length * start - sum, 2.0 * length * end + sum] }
+}
+
+#[inline(always)]
+fn total(x: [f64; FOUR]) -> f64 {
+    (x[0] + x[2]) + (x[1] + x[3])
 }
 
 /// Barrier −log(1 − (e/limit)^{1/(N+1)}) and its derivative with respect to e²; `None` at or above the
 /// limit. The root makes it grow with the edge's length instead of at the last moment.
+#[inline(always)]
 pub(super) fn barrier(order: usize, squared: f64, limit: f64) -> Option<(f64, f64)> {
     let limit = limit * limit;
     let floor = NEGLIGIBLE * NEGLIGIBLE;

@@ -7,8 +7,6 @@
 // Several arrays run in step in every loop here; zipping them would hide the formulas.
 #![allow(clippy::needless_range_loop)]
 
-use super::pair::Pair;
-
 /// What is summed over the samples of an element (as a mean), from a = X_ξ, b = X_η, d = a × b.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Measure {
@@ -26,47 +24,54 @@ pub(super) enum Measure {
 const SIZE_WEIGHT: f64 = 0.5;
 
 /// Samples along an element's four sides, in the element's directions, as read from the shared
-/// edges; `c` values, `d` slopes; `[side][x or y][sample]`.
-pub(super) struct Sides<const K: usize> {
-    pub c: [[[f64; K]; 2]; 4],
-    pub d: [[[f64; K]; 2]; 4],
+/// edges; `c` values, `d` slopes; `[side][x or y][lane]`. There are as many samples as the reference has, and
+/// L lanes, a few more: the compiler keeps whole vectors of lanes in registers. Lanes left over repeat the last
+/// sample and have no weight.
+pub(super) struct Sides<const L: usize> {
+    pub c: [[[f64; L]; 2]; 4],
+    pub d: [[[f64; L]; 2]; 4],
 }
 
-impl<const K: usize> Sides<K> {
-    pub const ZERO: Self = Sides { c: [[[0.0; K]; 2]; 4], d: [[[0.0; K]; 2]; 4] };
+impl<const L: usize> Sides<L> {
+    pub const ZERO: Self = Sides { c: [[[0.0; L]; 2]; 4], d: [[[0.0; L]; 2]; 4] };
 
-    /// Reads side `side` from an edge's samples (c x, c y, d x, d y), backwards if `flip`.
-    #[inline]
-    pub fn read(&mut self, side: usize, edge: &[f64], flip: bool) {
+    /// Reads side `side` from an edge's lanes (c x, c y, d x, d y); backwards if
+    /// `flip`.
+    #[inline(always)]
+    pub fn read(&mut self, side: usize, edge: &[f64], lanes: &Lanes<L>, flip: bool) {
+        let back = &lanes.back;
         for axis in 0..2 {
-            let (c, d) = (&edge[axis * K..(axis + 1) * K], &edge[(axis + 2) * K..(axis + 3) * K]);
+            let (c, d) = (&mut self.c[side][axis], &mut self.d[side][axis]);
+            c.copy_from_slice(&edge[axis * L..(axis + 1) * L]);
+            d.copy_from_slice(&edge[(axis + 2) * L..(axis + 3) * L]);
             if flip {
-                for k in 0..K {
-                    self.c[side][axis][k] = c[K - 1 - k];
-                    self.d[side][axis][k] = -d[K - 1 - k];
+                let (forth, slopes) = (*c, *d);
+                for k in 0..L {
+                    let from = back[k] % L;
+                    (c[k], d[k]) = (forth[from], -slopes[from]);
                 }
-            } else {
-                self.c[side][axis].copy_from_slice(c);
-                self.d[side][axis].copy_from_slice(d);
             }
         }
     }
 
     /// Adds side `side` of a gradient to an edge's.
-    #[inline]
-    pub fn add_to(&self, side: usize, edge: &mut [f64], flip: bool) {
+    #[inline(always)]
+    pub fn add_to(&self, side: usize, edge: &mut [f64], lanes: &Lanes<L>, flip: bool) {
+        let ahead = &lanes.swap;
         for axis in 0..2 {
-            let (c, d) = (&self.c[side][axis], &self.d[side][axis]);
+            let (mut c, mut d) = (self.c[side][axis], self.d[side][axis]);
             if flip {
-                for k in 0..K {
-                    edge[axis * K + k] += c[K - 1 - k];
-                    edge[(axis + 2) * K + k] -= d[K - 1 - k];
+                let (forth, slopes) = (c, d);
+                for k in 0..L {
+                    let from = ahead[k] % L;
+                    (c[k], d[k]) = (forth[from], -slopes[from]);
                 }
-            } else {
-                for k in 0..K {
-                    edge[axis * K + k] += c[k];
-                    edge[(axis + 2) * K + k] += d[k];
-                }
+            }
+            for (e, g) in edge[axis * L..(axis + 1) * L].iter_mut().zip(c) {
+                *e += g;
+            }
+            for (e, g) in edge[(axis + 2) * L..(axis + 3) * L].iter_mut().zip(d) {
+                *e += g;
             }
         }
     }
@@ -82,9 +87,9 @@ pub(super) struct Target {
 
 /// `base` to the power p − 1 for the p that [`Measure::Shape`] allows.
 #[inline(always)]
-fn power_less_one<const P: u32>(f: Pair) -> Pair {
+fn power_less_one<const P: u32>(f: f64) -> f64 {
     match P {
-        1 => Pair::splat(1.0),
+        1 => 1.0,
         2 => f,
         4 => f * f * f,
         _ => {
@@ -94,41 +99,73 @@ fn power_less_one<const P: u32>(f: Pair) -> Pair {
     }
 }
 
-/// Energy of an element (mean over the K × K samples, computed in H = ⌈K/2⌉ pairs, at parameters `t`), its gradient in
+/// Parameters of the samples along a side and their number; lanes left over repeat the last one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lanes<const L: usize> {
+    pub t: [f64; L],
+    pub count: usize,
+    /// The lane of the sample that each has seen from the other end, ...
+    back: [usize; L],
+    /// ... and the same with the lanes left over in their places.
+    swap: [usize; L],
+}
+
+impl<const L: usize> Lanes<L> {
+    /// For the parameters `samples`, at least one and at most L.
+    #[inline(always)]
+    pub fn new(samples: &[f64]) -> Self {
+        let count = samples.len().min(L);
+        let (mut t, mut back, mut swap) = ([0.0; L], [0; L], [0; L]);
+        for k in 0..L {
+            t[k] = samples[k.min(count - 1)];
+            back[k] = count.saturating_sub(k + 1);
+            swap[k] = if k < count { count - 1 - k } else { k };
+        }
+        Lanes { t, count, back, swap }
+    }
+}
+
+impl Lanes<2> {
+    /// The two ends alone.
+    pub const ENDS: Self = Lanes { t: [0.0, 1.0], count: 2, back: [1, 0], swap: [1, 0] };
+}
+
+/// Energy of an element (mean over the samples), its gradient in
 /// `gradient`, and the least d/A. `None` if the measure is a shape and some d ≤ 0.
-#[inline]
-pub(super) fn element<const K: usize, const H: usize>(
+#[inline(always)]
+pub(super) fn element<const L: usize>(
     measure: Measure,
-    t: &[f64; K],
-    sides: &Sides<K>,
+    lanes: &Lanes<L>,
+    sides: &Sides<L>,
     target: Target,
-    gradient: &mut Sides<K>,
+    gradient: &mut Sides<L>,
 ) -> Option<(f64, f64)> {
     match measure {
-        Measure::Shape(1) => run::<K, H, 1>(0.0, t, sides, target, gradient),
-        Measure::Shape(2) => run::<K, H, 2>(0.0, t, sides, target, gradient),
-        Measure::Shape(4) => run::<K, H, 4>(0.0, t, sides, target, gradient),
-        Measure::Shape(_) => run::<K, H, 8>(0.0, t, sides, target, gradient),
-        Measure::Regularised { epsilon } => run::<K, H, 0>(epsilon, t, sides, target, gradient),
+        Measure::Shape(1) => run::<L, 1>(0.0, lanes, sides, target, gradient),
+        Measure::Shape(2) => run::<L, 2>(0.0, lanes, sides, target, gradient),
+        Measure::Shape(4) => run::<L, 4>(0.0, lanes, sides, target, gradient),
+        Measure::Shape(_) => run::<L, 8>(0.0, lanes, sides, target, gradient),
+        Measure::Regularised { epsilon } => run::<L, 0>(epsilon, lanes, sides, target, gradient),
     }
 }
 
 /// Slopes of the sides less those of the bilinear map, and c₂ − c₀ along ξ.
 #[inline(always)]
-fn differences<const K: usize>(sides: &Sides<K>) -> ([[[f64; K]; 2]; 4], [[f64; K]; 2]) {
+fn differences<const L: usize>(sides: &Sides<L>) -> ([[[f64; L]; 2]; 4], [[f64; L]; 2]) {
     let (c, d) = (&sides.c, &sides.d);
-    let mut e = [[[0.0; K]; 2]; 4];
-    let mut w = [[0.0; K]; 2];
+    let mut e = [[[0.0; L]; 2]; 4];
+    let mut w = [[0.0; L]; 2];
     for axis in 0..2 {
-        let corner = [c[0][axis][0], c[0][axis][K - 1], c[2][axis][K - 1], c[2][axis][0]];
+        // The last lane is the last sample.
+        let corner = [c[0][axis][0], c[0][axis][L - 1], c[2][axis][L - 1], c[2][axis][0]];
         let straight =
             [corner[1] - corner[0], corner[2] - corner[1], corner[2] - corner[3], corner[3] - corner[0]];
         for side in 0..4 {
-            for k in 0..K {
+            for k in 0..L {
                 e[side][axis][k] = d[side][axis][k] - straight[side];
             }
         }
-        for k in 0..K {
+        for k in 0..L {
             w[axis][k] = c[2][axis][k] - c[0][axis][k];
         }
     }
@@ -143,156 +180,190 @@ pub(super) struct Sampled {
     pub scaled: f64,
 }
 
-/// Samples an element.
-pub(super) fn jacobians<const K: usize>(t: &[f64; K], sides: &Sides<K>) -> Sampled {
-    let c = &sides.c;
-    let (e, w) = differences(sides);
-    let (mut least, mut most, mut scaled) = (f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY);
-    for j in 0..K {
-        let (tj, uj) = (t[j], 1.0 - t[j]);
-        for i in 0..K {
-            let ax = uj * e[0][0][i] + tj * e[2][0][i] + c[1][0][j] - c[3][0][j];
-            let ay = uj * e[0][1][i] + tj * e[2][1][i] + c[1][1][j] - c[3][1][j];
-            let bx = (1.0 - t[i]) * e[3][0][j] + t[i] * e[1][0][j] + w[0][i];
-            let by = (1.0 - t[i]) * e[3][1][j] + t[i] * e[1][1][j] + w[1][i];
-            let det = ax * by - ay * bx;
-            least = least.min(det);
-            most = most.max(det);
-            let norms = ((ax * ax + ay * ay) * (bx * bx + by * by)).sqrt();
-            scaled = scaled.min(det / norms.max(f64::MIN_POSITIVE));
-        }
+/// The smaller of the two; a NaN in `b` is passed over.
+#[inline(always)]
+fn lesser(a: f64, b: f64) -> f64 {
+    if b < a {
+        b
+    } else {
+        a
     }
-    Sampled { least, most, scaled }
 }
 
-/// Samples in pairs; an odd last one is repeated (and has no weight).
-fn pairs<const K: usize, const H: usize>(values: &[f64; K]) -> [Pair; H] {
-    let mut out = [Pair::splat(0.0); H];
-    for h in 0..H {
-        out[h] = Pair([values[2 * h], values[(2 * h + 1).min(K - 1)]]);
+/// Sum and least value of lanes, halves first: in the same order whatever the width of the registers.
+#[inline(always)]
+pub(super) fn sum<const L: usize>(mut lanes: [f64; L]) -> f64 {
+    let mut width = L;
+    while width > 1 {
+        let half = width.div_ceil(2);
+        for k in half..width {
+            lanes[k - half] += lanes[k];
+        }
+        width = half;
     }
-    out
+    lanes[0]
+}
+
+/// The sums of several.
+#[inline(always)]
+fn sums<const L: usize, const M: usize>(lanes: [[f64; L]; M]) -> [f64; M] {
+    let mut sums = [0.0; M];
+    for (total, lanes) in sums.iter_mut().zip(lanes) {
+        *total = sum(lanes);
+    }
+    sums
+}
+
+#[inline(always)]
+fn least_of<const L: usize>(lanes: &[f64; L]) -> f64 {
+    let mut least = lanes[0];
+    for lane in lanes {
+        least = lesser(least, *lane);
+    }
+    least
+}
+
+/// Samples an element.
+#[inline(always)]
+pub(super) fn jacobians<const L: usize>(lanes: &Lanes<L>, sides: &Sides<L>) -> Sampled {
+    let (c, t) = (&sides.c, &lanes.t);
+    let (e, w) = differences(sides);
+    let mut least = [f64::INFINITY; L];
+    let mut most = [f64::INFINITY; L];
+    let mut scaled = [f64::INFINITY; L];
+    for j in 0..lanes.count.min(L) {
+        let (tj, uj) = (t[j], 1.0 - t[j]);
+        let (vx, vy) = (c[1][0][j] - c[3][0][j], c[1][1][j] - c[3][1][j]);
+        let (e1x, e1y, e3x, e3y) = (e[1][0][j], e[1][1][j], e[3][0][j], e[3][1][j]);
+        for i in 0..L {
+            let ax = uj * e[0][0][i] + tj * e[2][0][i] + vx;
+            let ay = uj * e[0][1][i] + tj * e[2][1][i] + vy;
+            let bx = (1.0 - t[i]) * e3x + t[i] * e1x + w[0][i];
+            let by = (1.0 - t[i]) * e3y + t[i] * e1y + w[1][i];
+            let det = ax * by - ay * bx;
+            let norms = ((ax * ax + ay * ay) * (bx * bx + by * by)).sqrt();
+            least[i] = lesser(least[i], det);
+            most[i] = lesser(most[i], -det);
+            scaled[i] =
+                lesser(scaled[i], det / if norms > f64::MIN_POSITIVE { norms } else { f64::MIN_POSITIVE });
+        }
+    }
+    Sampled { least: least_of(&least), most: -least_of(&most), scaled: least_of(&scaled) }
 }
 
 /// P = 0: the regularised measure.
-#[inline]
-fn run<const K: usize, const H: usize, const P: u32>(
+#[inline(always)]
+fn run<const L: usize, const P: u32>(
     epsilon: f64,
-    t: &[f64; K],
-    sides: &Sides<K>,
+    lanes: &Lanes<L>,
+    sides: &Sides<L>,
     target: Target,
-    out: &mut Sides<K>,
+    out: &mut Sides<L>,
 ) -> Option<(f64, f64)> {
-    let c = &sides.c;
+    let (c, t, count) = (&sides.c, &lanes.t, lanes.count.min(L));
     let (slopes, across) = differences(sides);
-    let [e0x, e0y] = [pairs::<K, H>(&slopes[0][0]), pairs(&slopes[0][1])];
-    let [e2x, e2y] = [pairs::<K, H>(&slopes[2][0]), pairs(&slopes[2][1])];
-    let [wx, wy] = [pairs::<K, H>(&across[0]), pairs(&across[1])];
-    let ts = pairs::<K, H>(t);
-    let splat = Pair::splat;
-    let (r, ri) = (splat(target.ratio), splat(1.0 / target.ratio));
-    let (area, area_i) = (splat(target.area), splat(1.0 / target.area));
-    let (angle, even) = (splat(0.5 * (1.0 - target.evenness)), splat(0.5 * target.evenness));
+    let [[e0x, e0y], [e2x, e2y], [wx, wy]] = [slopes[0], slopes[2], across];
+    let (r, ri) = (target.ratio, 1.0 / target.ratio);
+    let (area, area_i) = (target.area, 1.0 / target.area);
+    let (angle, even) = (0.5 * (1.0 - target.evenness), 0.5 * target.evenness);
     let shift = (epsilon * target.area) * (epsilon * target.area);
-    let (shift, shift_i) = (splat(shift), splat(2.0 / shift));
-    let (half, two, size) = (splat(0.5), splat(2.0), splat(0.5 * SIZE_WEIGHT));
-    let (mut energy, mut least) = (splat(0.0), splat(f64::INFINITY));
+    let (shift_i, size) = (2.0 / shift, 0.5 * SIZE_WEIGHT);
+    let mut weights = [1.0; L];
+    weights[count..].fill(0.0);
+    let mut energy = [0.0; L];
+    let mut least = [f64::INFINITY; L];
     // Gradients: to the slopes of sides 0 and 2, to c₂ − c₀ along ξ; the others are sums over rows.
-    let mut g0 = [[splat(0.0); H]; 2];
-    let mut g2 = [[splat(0.0); H]; 2];
-    let mut gw = [[splat(0.0); H]; 2];
-    let mut g1 = [[0.0; K]; 2];
-    let mut g3 = [[0.0; K]; 2];
-    let mut gv = [[0.0; K]; 2]; // to c₁ − c₃ along η
-    for j in 0..K {
-        let (tj, uj) = (splat(t[j]), splat(1.0 - t[j]));
-        let (vx, vy) = (splat(c[1][0][j] - c[3][0][j]), splat(c[1][1][j] - c[3][1][j]));
-        let (e3x, e3y) = (splat(slopes[3][0][j]), splat(slopes[3][1][j]));
-        let (sx, sy) = (splat(slopes[1][0][j]) - e3x, splat(slopes[1][1][j]) - e3y);
-        let mut row = [splat(0.0); 6];
-        for h in 0..H {
-            let ax = uj * e0x[h] + tj * e2x[h] + vx;
-            let ay = uj * e0y[h] + tj * e2y[h] + vy;
-            let bx = e3x + ts[h] * sx + wx[h];
-            let by = e3y + ts[h] * sy + wy[h];
+    let [mut g0x, mut g0y, mut g2x, mut g2y, mut gwx, mut gwy] = [[0.0; L]; 6];
+    let mut g1 = [[0.0; L]; 2];
+    let mut g3 = [[0.0; L]; 2];
+    let mut gv = [[0.0; L]; 2]; // to c₁ − c₃ along η
+    for j in 0..count {
+        let (tj, uj) = (t[j], 1.0 - t[j]);
+        let (vx, vy) = (c[1][0][j] - c[3][0][j], c[1][1][j] - c[3][1][j]);
+        let (e3x, e3y) = (slopes[3][0][j], slopes[3][1][j]);
+        let (sx, sy) = (slopes[1][0][j] - e3x, slopes[1][1][j] - e3y);
+        let mut row = [[0.0; L]; 6];
+        for i in 0..L {
+            let ax = uj * e0x[i] + tj * e2x[i] + vx;
+            let ay = uj * e0y[i] + tj * e2y[i] + vy;
+            let bx = e3x + t[i] * sx + wx[i];
+            let by = e3y + t[i] * sy + wy[i];
             let det = ax * by - ay * bx;
-            least = least.min(det);
+            least[i] = lesser(least[i], det);
             let norms = r * (ax * ax + ay * ay) + ri * (bx * bx + by * by);
             // The gradient is g_a = linear · r a − cross · (d's gradient), likewise for b.
-            let (mut linear, mut cross, mut value);
+            let (linear, cross, value);
             if P == 0 {
                 // χ = s/2 for d > 0, else (εA)²/(2s), s = √(d² + (εA)²) + |d|: neither cancels.
                 let root = (det * det + shift).sqrt();
                 let s = root + det.abs();
-                let chi_i = det.choose_positive(two / s, s * shift_i);
-                let f = (half * norms + size * (det * det * area_i + area)) * chi_i;
+                let chi_i = if det > 0.0 { 2.0 / s } else { s * shift_i };
+                let f = (0.5 * norms + size * (det * det * area_i + area)) * chi_i;
                 value = f;
                 linear = chi_i;
-                cross = f / root - two * size * det * area_i * chi_i;
+                cross = f / root - 2.0 * size * det * area_i * chi_i;
             } else {
-                let inverse = splat(1.0) / det;
+                let inverse = 1.0 / det;
                 let shape = angle * norms * inverse;
                 let (up, down) = (even * det * area_i, even * area * inverse);
                 let f = shape + up + down;
                 let power = power_less_one::<P>(f);
                 value = f * power;
                 let slope = power * inverse;
-                linear = two * angle * slope;
+                linear = 2.0 * angle * slope;
                 cross = slope * (shape + down - up);
             }
-            if K % 2 == 1 && h == H - 1 {
-                let once = Pair([1.0, 0.0]);
-                (value, linear, cross) = (value * once, linear * once, cross * once);
-            }
-            energy = energy + value;
+            let (linear, cross) = (linear * weights[i], cross * weights[i]);
+            energy[i] += value * weights[i];
             let (lr, li) = (linear * r, linear * ri);
             let gax = lr * ax - cross * by;
             let gay = lr * ay + cross * bx;
             let gbx = li * bx + cross * ay;
             let gby = li * by - cross * ax;
-            g0[0][h] = g0[0][h] + uj * gax;
-            g0[1][h] = g0[1][h] + uj * gay;
-            g2[0][h] = g2[0][h] + tj * gax;
-            g2[1][h] = g2[1][h] + tj * gay;
-            gw[0][h] = gw[0][h] + gbx;
-            gw[1][h] = gw[1][h] + gby;
-            row[0] = row[0] + gax;
-            row[1] = row[1] + gay;
-            row[2] = row[2] + gbx;
-            row[3] = row[3] + gby;
-            row[4] = row[4] + ts[h] * gbx;
-            row[5] = row[5] + ts[h] * gby;
+            g0x[i] += uj * gax;
+            g0y[i] += uj * gay;
+            g2x[i] += tj * gax;
+            g2y[i] += tj * gay;
+            gwx[i] += gbx;
+            gwy[i] += gby;
+            row[0][i] = gax;
+            row[1][i] = gay;
+            row[2][i] = gbx;
+            row[3][i] = gby;
+            row[4][i] = t[i] * gbx;
+            row[5][i] = t[i] * gby;
         }
-        let row = row.map(Pair::sum);
+        let row = sums(row);
         (gv[0][j], gv[1][j]) = (row[0], row[1]);
         (g3[0][j], g3[1][j]) = (row[2] - row[4], row[3] - row[5]);
         (g1[0][j], g1[1][j]) = (row[4], row[5]);
-        if P != 0 && least.least() <= 0.0 {
+        if P != 0 && least_of(&least) <= 0.0 {
             return None;
         }
     }
-    let weight = 1.0 / (K * K) as f64;
+    let weight = 1.0 / (count * count) as f64;
+    let along = [[g0x, g0y], [g2x, g2y], [gwx, gwy]];
     for axis in 0..2 {
-        let mut sum = [0.0; 4];
-        for k in 0..K {
-            let lane = |p: &[Pair; H]| p[k / 2].0[k % 2];
-            let g = [lane(&g0[axis]), g1[axis][k], lane(&g2[axis]), g3[axis][k]];
-            for side in 0..4 {
-                let value = g[side] * weight;
-                out.d[side][axis][k] = value;
-                sum[side] += value;
+        let [g0, g2, gw] = [along[0][axis], along[1][axis], along[2][axis]];
+        let mut sums = [0.0; 4];
+        for (side, g) in [g0, g1[axis], g2, g3[axis]].into_iter().enumerate() {
+            for k in 0..L {
+                out.d[side][axis][k] = g[k] * weight;
             }
-            out.c[0][axis][k] = -lane(&gw[axis]) * weight;
-            out.c[2][axis][k] = lane(&gw[axis]) * weight;
+            sums[side] = sum(out.d[side][axis]);
+        }
+        for k in 0..L {
+            out.c[0][axis][k] = -gw[k] * weight;
+            out.c[2][axis][k] = gw[k] * weight;
             out.c[1][axis][k] = gv[axis][k] * weight;
             out.c[3][axis][k] = -gv[axis][k] * weight;
         }
         // The slopes had those of the straight sides taken off, which hang on the corners.
-        out.c[0][axis][0] += sum[0] + sum[3];
-        out.c[0][axis][K - 1] += sum[1] - sum[0];
-        out.c[2][axis][K - 1] -= sum[1] + sum[2];
-        out.c[2][axis][0] += sum[2] - sum[3];
+        out.c[0][axis][0] += sums[0] + sums[3];
+        out.c[0][axis][count - 1] += sums[1] - sums[0];
+        out.c[2][axis][count - 1] -= sums[1] + sums[2];
+        out.c[2][axis][0] += sums[2] - sums[3];
     }
     let scale = if P == 0 { weight } else { weight / P as f64 };
-    Some((energy.sum() * scale, least.least() / target.area))
+    Some((sum(energy) * scale, least_of(&least) / target.area))
 }

@@ -22,14 +22,12 @@ mod lift;
 mod local;
 mod minimiser;
 mod optimiser;
-mod pair;
 mod problem;
 mod quality;
 mod reference;
 mod straight;
 mod straightness;
 mod untangle;
-mod walk;
 
 pub use laplacian::equal_spacing;
 pub use optimiser::{Aim, Effort, Optimiser, Outcome};

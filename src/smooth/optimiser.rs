@@ -43,14 +43,29 @@ pub struct Outcome {
     pub quality: Quality,
 }
 
-/// When a trial may end early, by the least scaled Jacobian that the optimiser's samples see.
+/// When a trial may end early, by what the optimiser's samples see.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aim {
-    /// Reached together with the tolerance: well enough.
+    /// A least scaled Jacobian that is, with the tolerance, well enough.
     pub enough: f64,
-    /// Not reached by the first power, which brings most of what there is to gain: given up.
-    pub hopeless: f64,
+    /// Those that have to be reached by the first power, the second, the third: they bring most of what there
+    /// is to gain.
+    pub hopeless: [f64; 3],
+    /// Inverted elements at the start up to which it is tried at all; up to twice as many if none is inverted by far.
+    pub most_inverted: usize,
 }
+
+impl Aim {
+    /// Nothing is given up.
+    pub fn at(enough: f64) -> Self {
+        Aim { enough, hopeless: [f64::NEG_INFINITY; 3], most_inverted: NO_LIMIT }
+    }
+}
+
+/// More elements than any mesh has inverted, twice.
+const NO_LIMIT: usize = usize::MAX / 2;
+/// Scaled Jacobian below which elements are inverted by far: several of them mostly stay so.
+const FAR_INVERTED: f64 = -0.8;
 
 /// Step bound of the minimiser, in natural lengths.
 const REACH: f64 = 0.5;
@@ -341,6 +356,12 @@ impl<'a> Optimiser<'a> {
         let mut lbfgs = Lbfgs::default();
         let mut problem = self.problem(reference, mesh, active, true, effort);
         let schedule = effort.schedule_for(problem.cost(1) as usize);
+        if aim.is_some_and(|aim| {
+            let most = if problem.scaled_jacobian < FAR_INVERTED { 1 } else { 2 } * aim.most_inverted;
+            problem.inverted > most
+        }) {
+            return State::of(&mut problem, false);
+        }
         let mut valid = problem.least_jacobian() > 0.0;
         let mut few = false;
         if !valid && active.is_none() {
@@ -433,7 +454,8 @@ impl<'a> Optimiser<'a> {
                     break;
                 }
             }
-            if round == 0 && aim.is_some_and(|aim| problem.scaled_jacobian < aim.hopeless) {
+            let needed = aim.and_then(|aim| aim.hopeless.get(round).copied());
+            if needed.is_some_and(|needed| problem.scaled_jacobian < needed) {
                 break;
             }
         }

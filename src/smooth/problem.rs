@@ -9,12 +9,13 @@ mod restart;
 mod sampling;
 mod unknowns;
 
-use super::kernel::{self, Measure, Sides, Target};
+use super::kernel::{self, Lanes, Measure, Sides, Target};
 use super::minimiser::{Lbfgs, Limits, Objective, Scales};
 use super::reference::{Reference, MAX_SAMPLES};
 use crate::domain::{Boundary, BoundaryPoint, Place, Span};
 use crate::mesh::{BoundaryError, QuadMesh};
 use crate::numerics::{Point, Vector, NONE};
+use pulp::NullaryFnOnce;
 use sampling::arc_lengths;
 
 /// Weight of an even Jacobian against angles in the shape energy; uneven elements get more.
@@ -97,16 +98,20 @@ pub(super) struct Problem<'a> {
     vertices: Vec<LocalVertex>,
     edges: Vec<LocalEdge>,
     elements: Vec<LocalElement>,
-    /// Per edge 4 K numbers: x, y and slopes of x, y at the samples; and the gradient to them.
+    /// Per edge 4 L numbers: x, y and slopes of x, y at the samples; and the gradient to them.
     samples: Vec<f64>,
     adjoint: Vec<f64>,
     /// Point and derivative at the nodes of boundary edges.
     nodes: Vec<[Vector; 2]>,
+    /// For each edge on a chain the interval of the table that it began in.
+    hints: Vec<usize>,
     pub unknowns: Vec<f64>,
     pub scales: Scales,
     /// Spacing of the grid that unknowns stay on, in edge lengths.
     pub grid: f64,
     pub measure: Measure,
+    /// Inverted elements at the last refresh.
+    pub inverted: usize,
     /// Least scaled Jacobian at the last refresh, and the mean of the elements'.
     pub scaled_jacobian: f64,
     pub mean_scaled_jacobian: f64,
@@ -116,22 +121,46 @@ pub(super) struct Problem<'a> {
     pub least: f64,
 }
 
-/// Calls a method that is generic in the number of samples and of pairs of them.
-macro_rules! for_samples {
-    ($problem:expr, $method:ident) => {
-        match $problem.reference.samples.len() {
-            3 => $problem.$method::<3, 2>(),
-            4 => $problem.$method::<4, 2>(),
-            5 => $problem.$method::<5, 3>(),
-            6 => $problem.$method::<6, 3>(),
-            7 => $problem.$method::<7, 4>(),
-            8 => $problem.$method::<8, 4>(),
-            9 => $problem.$method::<9, 5>(),
-            10 => $problem.$method::<10, 5>(),
-            11 => $problem.$method::<11, 6>(),
-            _ => $problem.$method::<MAX_SAMPLES, { MAX_SAMPLES / 2 }>(),
+/// What is done with the sampled elements, compiled for the widest registers that the processor has. The order
+/// of additions is fixed by the lanes, and nothing is fused: the results are the same on any.
+enum Task<'t> {
+    Sample { x: &'t [f64], fixed: bool, mesh: Option<&'t QuadMesh> },
+    Weigh,
+    Evaluate { x: &'t [f64], gradient: &'t mut [f64] },
+}
+
+/// A task for a problem; its value, for sampling whether it succeeded.
+struct Wide<'p, 'a, 't> {
+    problem: &'p mut Problem<'a>,
+    task: Task<'t>,
+}
+
+impl Wide<'_, '_, '_> {
+    #[inline(always)]
+    fn run<const L: usize>(self) -> f64 {
+        let problem = self.problem;
+        match self.task {
+            Task::Sample { x, fixed, mesh } => f64::from(u8::from(problem.sample::<L>(x, fixed, mesh))),
+            Task::Weigh => {
+                problem.weigh_elements::<L>();
+                0.0
+            }
+            Task::Evaluate { x, gradient } => problem.evaluate_lanes::<L>(x, gradient),
         }
-    };
+    }
+}
+
+impl NullaryFnOnce for Wide<'_, '_, '_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        match self.problem.reference.lanes {
+            4 => self.run::<4>(),
+            8 => self.run::<8>(),
+            _ => self.run::<MAX_SAMPLES>(),
+        }
+    }
 }
 
 impl<'a> Problem<'a> {
@@ -221,22 +250,29 @@ impl<'a> Problem<'a> {
         }
     }
 
-    fn refresh_evenness(&mut self) {
-        for_samples!(self, weigh_elements)
+    /// See [`Task`].
+    fn wide(&mut self, task: Task) -> f64 {
+        pulp::Arch::new().dispatch(Wide { problem: self, task })
     }
 
-    fn evaluate_elements<const K: usize, const H: usize>(&mut self) -> f64 {
-        let mut t = [0.0; K];
-        t.copy_from_slice(&self.reference.samples);
-        let (mut sides, mut gradient) = (Sides::<K>::ZERO, Sides::<K>::ZERO);
+    /// Samples all moving edges at the unknowns `x`; with `fixed` also the others, whose bubbles are
+    /// read from `mesh`. `false` if a boundary edge has no length left.
+    fn sample_all(&mut self, x: &[f64], fixed: bool, mesh: Option<&QuadMesh>) -> bool {
+        self.wide(Task::Sample { x, fixed, mesh }) > 0.0
+    }
+
+    #[inline(always)]
+    fn evaluate_elements<const L: usize>(&mut self) -> f64 {
+        let lanes = Lanes::<L>::new(&self.reference.samples);
+        let (mut sides, mut gradient) = (Sides::<L>::ZERO, Sides::<L>::ZERO);
         let (mut sum, mut least) = (0.0, f64::INFINITY);
         let power = if let Measure::Shape(p) = self.measure { p as f64 } else { 1.0 };
         for element in self.elements.iter_mut().filter(|e| !e.plain) {
             for side in 0..4 {
-                let at = element.edges[side] as usize * 4 * K;
-                sides.read(side, &self.samples[at..at + 4 * K], element.flips[side]);
+                let at = element.edges[side] as usize * 4 * L;
+                sides.read(side, &self.samples[at..at + 4 * L], &lanes, element.flips[side]);
             }
-            match kernel::element::<K, H>(self.measure, &t, &sides, element.target, &mut gradient) {
+            match kernel::element::<L>(self.measure, &lanes, &sides, element.target, &mut gradient) {
                 None => return f64::INFINITY,
                 Some((energy, jacobian)) => {
                     sum += energy;
@@ -245,36 +281,45 @@ impl<'a> Problem<'a> {
                 }
             }
             for side in 0..4 {
-                let at = element.edges[side] as usize * 4 * K;
-                gradient.add_to(side, &mut self.adjoint[at..at + 4 * K], element.flips[side]);
+                let at = element.edges[side] as usize * 4 * L;
+                gradient.add_to(side, &mut self.adjoint[at..at + 4 * L], &lanes, element.flips[side]);
             }
         }
         self.least = self.least.min(least);
         sum
     }
-}
 
-impl Objective for Problem<'_> {
-    fn evaluate(&mut self, x: &[f64], gradient: &mut [f64]) -> f64 {
-        if !self.sample(x, false, None) {
+    #[inline(always)]
+    fn evaluate_lanes<const L: usize>(&mut self, x: &[f64], gradient: &mut [f64]) -> f64 {
+        if !self.sample::<L>(x, false, None) {
             return f64::INFINITY;
         }
-        self.adjoint.fill(0.0);
+        for (edge, adjoint) in self.edges.iter().zip(self.adjoint.chunks_exact_mut(4 * L)) {
+            if edge.sampled {
+                adjoint.fill(0.0);
+            }
+        }
         self.least = f64::INFINITY;
         let plain = self.evaluate_plain();
         if !plain.is_finite() {
             return f64::INFINITY;
         }
-        let energy = plain + for_samples!(self, evaluate_elements);
+        let energy = plain + self.evaluate_elements::<L>();
         if !energy.is_finite() {
             return f64::INFINITY;
         }
-        let total = energy + self.gather(x, gradient);
+        let total = energy + self.gather::<L>(x, gradient);
         if total.is_nan() {
             f64::INFINITY
         } else {
             total
         }
+    }
+}
+
+impl Objective for Problem<'_> {
+    fn evaluate(&mut self, x: &[f64], gradient: &mut [f64]) -> f64 {
+        self.wide(Task::Evaluate { x, gradient })
     }
 }
 

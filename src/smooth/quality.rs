@@ -2,7 +2,7 @@
 
 use super::reference::{bubble, Reference};
 use super::straightness::Straightness;
-use super::walk::walk;
+use crate::domain::walk::{walk, FOUR};
 use crate::domain::Boundary;
 use crate::mesh::QuadMesh;
 use crate::numerics::{cross, Vector};
@@ -51,14 +51,19 @@ impl Quality {
 /// Values and slopes of an edge at the samples, in the edge's direction.
 fn edge_samples(boundary: &Boundary, reference: &Reference, mesh: &QuadMesh, edge: u32) -> Vec<[Vector; 2]> {
     let edge = &mesh.edges[edge as usize];
-    let k = reference.samples.len();
+    let (k, lanes) = (reference.samples.len(), reference.lanes);
     if let Some(span) = edge.span {
         let mut out = vec![[Vector::zeros(); 2]; k];
         let chain = &boundary.chains[span.chain as usize];
-        walk(chain, span.start, span.end - span.start, &reference.nodes, |i, p, _| {
-            for (j, out) in out.iter_mut().enumerate() {
-                out[0] += p * reference.lagrange[i * k + j];
-                out[1] += p * reference.lagrange_slope[i * k + j];
+        walk(chain, [span.start, span.end - span.start], &mut 0, &reference.nodes, |first, four| {
+            for i in first..(first + FOUR).min(reference.nodes.len()) {
+                let p = Vector::new(four.point[0][i - first], four.point[1][i - first]);
+                let value = &reference.lagrange[i * lanes..i * lanes + k];
+                let slope = &reference.lagrange_slope[i * lanes..i * lanes + k];
+                for ((out, value), slope) in out.iter_mut().zip(value).zip(slope) {
+                    out[0] += p * *value;
+                    out[1] += p * *slope;
+                }
             }
         });
         return out;

@@ -1,5 +1,6 @@
 //! Tables on the reference edge: what turns an edge's unknowns into samples of its curve.
 
+use crate::domain::walk::FOUR;
 use crate::numerics::{GaussLegendre, GaussLobatto, Interpolation};
 
 /// Most samples per direction: at high order the shapes that the optimiser can give an interior edge
@@ -22,21 +23,24 @@ pub(super) struct Reference {
     pub order: usize,
     /// Sample parameters, ascending with both ends, exactly symmetric.
     pub samples: Vec<f64>,
+    /// Length L of the tables' columns: samples rounded up to whole vectors; the last sample is repeated.
+    pub lanes: usize,
     /// Number of bubbles of an interior edge.
     pub bubbles: usize,
-    /// `bubble[m * K + k]`: bubble m at sample k, and its derivative.
+    /// `bubble[m * L + k]`: bubble m at sample k, and its derivative.
     pub bubble: Vec<f64>,
     pub bubble_slope: Vec<f64>,
     /// The N + 1 nodes of a boundary edge.
     pub nodes: Vec<f64>,
-    /// `lagrange[i * K + k]`: the Lagrange polynomial of node i at sample k, and its derivative.
+    /// `lagrange[i * L + k]`: the Lagrange polynomial of node i at sample k, and its derivative.
     pub lagrange: Vec<f64>,
     pub lagrange_slope: Vec<f64>,
-    /// Quadrature of the boundary error.
+    /// Quadrature of the boundary error, filled up to whole fours with points of no weight.
     pub error_points: Vec<f64>,
     pub error_weights: Vec<f64>,
-    /// `error_lagrange[q * (N + 1) + i]`.
+    /// By fours of points: `error_lagrange[q / 4 * 4 * (N + 1) + 4 * i + q % 4]`, and the same times node i.
     pub error_lagrange: Vec<f64>,
+    pub error_shifted: Vec<f64>,
 }
 
 /// Bubble 4 τ (1 − τ) P_m(2τ − 1) and its derivative in τ.
@@ -63,23 +67,40 @@ impl Reference {
         let interpolation = Interpolation::new(lobatto.nodes.clone());
         let gauss = GaussLegendre::new(order + MORE_ERROR_POINTS);
         let samples = unit(&at);
+        let lanes = samples.len().next_multiple_of(FOUR);
+        // Targets of the tables: the samples, the last as often as there are lanes left.
+        let at: Vec<f64> = (0..lanes).map(|k| at[k.min(samples.len() - 1)]).collect();
         let bubbles = (order - 1).min(MAX_BUBBLES);
         let table: Vec<(f64, f64)> =
-            (0..bubbles).flat_map(|m| samples.iter().map(move |t| bubble(m, *t))).collect();
+            (0..bubbles).flat_map(|m| unit(&at).into_iter().map(move |t| bubble(m, t))).collect();
         // nalgebra stores by columns: rows are targets, columns nodes. Slopes are per unit of [0, 1].
         let slope = interpolation.derivative_matrix(&at) * 2.0;
-        let error = interpolation.matrix(&gauss.nodes).transpose();
+        let nodes = unit(&lobatto.nodes);
+        let points = gauss.nodes.len().next_multiple_of(FOUR);
+        let gauss_nodes: Vec<f64> = (0..points).map(|q| gauss.nodes[q.min(gauss.nodes.len() - 1)]).collect();
+        let error = interpolation.matrix(&gauss_nodes);
+        let by_fours = |value: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+            let mut list = Vec::with_capacity(points * (order + 1));
+            for first in (0..points).step_by(FOUR) {
+                for i in 0..=order {
+                    list.extend((first..first + FOUR).map(|q| value(q, i)));
+                }
+            }
+            list
+        };
         Reference {
             order,
+            lanes,
             bubbles,
             bubble: table.iter().map(|b| b.0).collect(),
             bubble_slope: table.iter().map(|b| b.1).collect(),
-            nodes: unit(&lobatto.nodes),
             lagrange: interpolation.matrix(&at).as_slice().to_vec(),
             lagrange_slope: slope.as_slice().to_vec(),
-            error_points: unit(&gauss.nodes),
-            error_weights: gauss.weights.iter().map(|w| 0.5 * w).collect(),
-            error_lagrange: error.as_slice().to_vec(),
+            error_points: unit(&gauss_nodes),
+            error_weights: (0..points).map(|q| gauss.weights.get(q).map_or(0.0, |w| 0.5 * w)).collect(),
+            error_lagrange: by_fours(&|q, i| error[(q, i)]),
+            error_shifted: by_fours(&|q, i| error[(q, i)] * nodes[i]),
+            nodes,
             samples,
         }
     }

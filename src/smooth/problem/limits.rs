@@ -1,9 +1,11 @@
 //! What stays constant during a minimisation: aspect ratios, weights, error limits.
 
 use super::sampling::arc_lengths;
-use super::{LocalEdge, LocalElement, Problem, Shape, EVENNESS};
+use super::{LocalEdge, LocalElement, Problem, Shape, Task, EVENNESS};
+use crate::numerics::Vector;
 use crate::smooth::edge_error::{squared_error, NEGLIGIBLE};
-use crate::smooth::kernel::{self, Sampled, Sides, Target};
+use crate::smooth::kernel::{self, Lanes, Sampled, Sides, Target};
+use crate::smooth::reference::Reference;
 
 /// The barrier stands this much before the tolerance.
 const MARGIN: f64 = 0.98;
@@ -25,8 +27,9 @@ const FREE_ASPECT: f64 = 6.0;
 impl Problem<'_> {
     /// Length of each local edge as sampled last.
     fn lengths(&self) -> Vec<f64> {
-        let k = self.reference.samples.len();
-        let along = |s: &[f64]| (1..k).map(|i| (s[i] - s[i - 1]).hypot(s[k + i] - s[k + i - 1])).sum();
+        let (k, lanes) = (self.reference.samples.len(), self.reference.lanes);
+        let step = |s: &[f64], i: usize| Vector::new(s[i] - s[i - 1], s[lanes + i] - s[lanes + i - 1]);
+        let along = |s: &[f64]| (1..k).map(|i| step(s, i).norm()).sum();
         let length = |(edge, samples): (&LocalEdge, &[f64])| match edge.sampled {
             true => along(samples),
             false => {
@@ -34,14 +37,14 @@ impl Problem<'_> {
                 (b - a).norm()
             }
         };
-        self.edges.iter().zip(self.samples.chunks_exact(4 * k)).map(length).collect()
+        self.edges.iter().zip(self.samples.chunks_exact(4 * lanes)).map(length).collect()
     }
 
     /// Takes aspect ratios, weights and error limits from the present state: they stay
     /// constant during a minimisation.
     pub fn refresh(&mut self) {
         let x = std::mem::take(&mut self.unknowns);
-        self.sample(&x, false, None);
+        self.sample_all(&x, false, None);
         self.unknowns = x;
         let lengths = self.lengths();
         for element in &mut self.elements {
@@ -51,14 +54,14 @@ impl Problem<'_> {
             let (l1, l2) = ((0.5 * (l[0] + l[2])).max(floor), (0.5 * (l[1] + l[3])).max(floor));
             let area = match element.plain {
                 true => element.plain_area(&self.vertices),
-                false => area(element, &self.samples, self.reference.samples.len()),
+                false => area(element, &self.samples, self.reference),
             };
             // Inverted elements have no area worth keeping.
             let area = if area > 0.2 * l1 * l2 { area } else { l1 * l2 };
             element.target = Target { ratio: tame(l2 / l1), area, evenness: EVENNESS };
             element.thinness = 1.0 / (l1 * l1) + 1.0 / (l2 * l2);
         }
-        self.refresh_evenness();
+        self.wide(Task::Weigh);
         self.refresh_limits();
     }
 
@@ -68,7 +71,7 @@ impl Problem<'_> {
         self.error_ratio = 0.0;
         let Some(tolerance) = self.tolerance else { return };
         let (x, n) = (&self.unknowns, self.reference.nodes.len());
-        for edge in self.edges.iter_mut().filter(|e| e.moves) {
+        for (edge, hint) in self.edges.iter_mut().zip(&mut self.hints).filter(|(e, _)| e.moves) {
             let straight = edge.straight;
             if let Shape::Boundary { chain, unknowns, offsets, nodes, limit, weight, length } =
                 &mut edge.shape
@@ -93,7 +96,7 @@ impl Problem<'_> {
                     (ROOM * now, RESCUE_WEIGHT)
                 };
                 if now > NEGLIGIBLE * wanted {
-                    let seen = squared_error(self.reference, chain, start, *length, own).value.sqrt();
+                    let seen = squared_error(self.reference, chain, [start, *length], hint, own).value.sqrt();
                     *limit *= seen / now;
                 }
             }
@@ -101,22 +104,24 @@ impl Problem<'_> {
     }
 
     /// Gives uneven elements more weight on evenness.
-    pub(super) fn weigh_elements<const K: usize, const H: usize>(&mut self) {
-        let mut t = [0.0; K];
-        t.copy_from_slice(&self.reference.samples);
-        let mut sides = Sides::<K>::ZERO;
+    #[inline(always)]
+    pub(super) fn weigh_elements<const L: usize>(&mut self) {
+        let lanes = Lanes::<L>::new(&self.reference.samples);
+        let mut sides = Sides::<L>::ZERO;
         (self.scaled_jacobian, self.mean_scaled_jacobian) = (f64::INFINITY, 0.0);
+        self.inverted = 0;
         let share = 1.0 / self.elements.len().max(1) as f64;
         for element in &mut self.elements {
             let Sampled { least, most, scaled } = if element.plain {
                 element.plain_jacobians(&self.vertices)
             } else {
                 for side in 0..4 {
-                    let at = element.edges[side] as usize * 4 * K;
-                    sides.read(side, &self.samples[at..at + 4 * K], element.flips[side]);
+                    let at = element.edges[side] as usize * 4 * L;
+                    sides.read(side, &self.samples[at..at + 4 * L], &lanes, element.flips[side]);
                 }
-                kernel::jacobians(&t, &sides)
+                kernel::jacobians(&lanes, &sides)
             };
+            self.inverted += usize::from(least <= 0.0);
             self.scaled_jacobian = self.scaled_jacobian.min(scaled);
             self.mean_scaled_jacobian += share * scaled;
             let wanted = EVENNESS * UNEVEN * most / least;
@@ -128,11 +133,12 @@ impl Problem<'_> {
 }
 
 /// Signed area inside an element's sampled sides.
-fn area(element: &LocalElement, samples: &[f64], k: usize) -> f64 {
+fn area(element: &LocalElement, samples: &[f64], reference: &Reference) -> f64 {
+    let (k, lanes) = (reference.samples.len(), reference.lanes);
     let mut twice = 0.0;
     for side in 0..4 {
-        let c = &samples[element.edges[side] as usize * 4 * k..];
-        let sum: f64 = (1..k).map(|i| c[i - 1] * c[k + i] - c[i] * c[k + i - 1]).sum();
+        let c = &samples[element.edges[side] as usize * 4 * lanes..];
+        let sum: f64 = (1..k).map(|i| c[i - 1] * c[lanes + i] - c[i] * c[lanes + i - 1]).sum();
         // Sides 2 and 3 run clockwise.
         twice += if element.flips[side] == (side < 2) { -sum } else { sum };
     }

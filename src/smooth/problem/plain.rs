@@ -2,13 +2,10 @@
 
 use super::{LocalElement, LocalVertex, Problem};
 use crate::numerics::Vector;
-use crate::smooth::kernel::{self, Measure, Sampled, Sides};
+use crate::smooth::kernel::{self, Lanes, Measure, Sampled, Sides};
 
 /// Cost of an evaluation, in samples of a curved element.
 pub(super) const COST_IN_SAMPLES: usize = 6;
-/// The samples along a side.
-const ENDS: [f64; 2] = [0.0, 1.0];
-
 /// First and last corner of each side, in the element's directions.
 const SIDES: [[usize; 2]; 4] = [[0, 1], [1, 2], [3, 2], [0, 3]];
 
@@ -23,6 +20,7 @@ impl LocalElement {
         0.5 * (p[2] - p[0]).perp(&(p[3] - p[1]))
     }
 
+    #[inline(always)]
     fn plain_sides(&self, vertices: &[LocalVertex], sides: &mut Sides<2>) {
         let p = self.corner_points(vertices);
         for (side, [a, b]) in SIDES.into_iter().enumerate() {
@@ -38,12 +36,13 @@ impl LocalElement {
     pub(super) fn plain_jacobians(&self, vertices: &[LocalVertex]) -> Sampled {
         let mut sides = Sides::<2>::ZERO;
         self.plain_sides(vertices, &mut sides);
-        kernel::jacobians(&ENDS, &sides)
+        kernel::jacobians(&Lanes::ENDS, &sides)
     }
 }
 
 impl Problem<'_> {
     /// Energy of the plain elements; clears the vertices' gradients and adds theirs. Infinite where a shape energy is.
+    #[inline(always)]
     pub(super) fn evaluate_plain(&mut self) -> f64 {
         self.vertices.iter_mut().for_each(|v| v.gradient = Vector::zeros());
         let (mut sides, mut gradient) = (Sides::<2>::ZERO, Sides::<2>::ZERO);
@@ -51,7 +50,7 @@ impl Problem<'_> {
         let mut sum = 0.0;
         for element in self.elements.iter_mut().filter(|e| e.plain) {
             element.plain_sides(&self.vertices, &mut sides);
-            let out = kernel::element::<2, 1>(self.measure, &ENDS, &sides, element.target, &mut gradient);
+            let out = kernel::element::<2>(self.measure, &Lanes::ENDS, &sides, element.target, &mut gradient);
             let Some((energy, jacobian)) = out else { return f64::INFINITY };
             sum += energy;
             element.energy = power * energy;

@@ -1,15 +1,18 @@
 //! From unknowns to sampled edges: forward.
 
 use super::{Freedom, Problem, Shape};
+use crate::domain::walk::{walk, Four, FOUR};
 use crate::mesh::QuadMesh;
 use crate::numerics::{Vector, NONE};
-use crate::smooth::walk::walk;
+use crate::smooth::kernel::Lanes;
 
 impl Problem<'_> {
     /// Samples all moving edges at the unknowns `x`; with `fixed` also the others, whose bubbles are
     /// read from `mesh`. `false` if a boundary edge has no length left.
-    pub(super) fn sample(&mut self, x: &[f64], fixed: bool, mesh: Option<&QuadMesh>) -> bool {
-        let k = self.reference.samples.len();
+    #[inline(always)]
+    pub(super) fn sample<const L: usize>(&mut self, x: &[f64], fixed: bool, mesh: Option<&QuadMesh>) -> bool {
+        let reference = self.reference;
+        let Lanes { t, .. } = Lanes::<L>::new(&reference.samples);
         for vertex in &mut self.vertices {
             match vertex.freedom {
                 Freedom::Fixed => {}
@@ -20,7 +23,8 @@ impl Problem<'_> {
                 }
             }
         }
-        for (edge, out) in self.edges.iter().zip(self.samples.chunks_exact_mut(4 * k)) {
+        let samples = self.samples.chunks_exact_mut(4 * L);
+        for ((edge, out), hint) in self.edges.iter().zip(samples).zip(&mut self.hints) {
             if !((edge.moves || fixed) && edge.sampled) {
                 if let Shape::Boundary { unknowns, offsets, .. } = edge.shape {
                     let [start, end] = arc_lengths(x, unknowns, offsets);
@@ -30,31 +34,25 @@ impl Problem<'_> {
                 }
                 continue;
             }
-            let (cx, rest) = out.split_at_mut(k);
-            let (cy, rest) = rest.split_at_mut(k);
-            let (dx, dy) = rest.split_at_mut(k);
+            // Values and slopes: x, y, dx, dy.
+            let mut own = [[0.0; L]; 4];
             match edge.shape {
                 Shape::Interior { unknown } => {
                     let [a, b] = edge.vertices.map(|v| self.vertices[v as usize].point);
                     let d = b - a;
-                    for (i, t) in self.reference.samples.iter().enumerate() {
-                        (cx[i], cy[i], dx[i], dy[i]) = (a.x + t * d.x, a.y + t * d.y, d.x, d.y);
+                    for k in 0..L {
+                        (own[0][k], own[1][k]) = (a.x + t[k] * d.x, a.y + t[k] * d.y);
                     }
-                    let own =
+                    (own[2], own[3]) = ([d.x; L], [d.y; L]);
+                    let given =
                         mesh.filter(|_| unknown == NONE).map(|m| &m.edges[edge.global as usize].bubbles);
-                    for m in 0..self.reference.bubbles {
-                        let c = match (unknown, own) {
+                    for m in 0..reference.bubbles {
+                        let c = match (unknown, given) {
                             (NONE, None) => continue,
                             (NONE, Some(list)) => list.get(m).copied().unwrap_or_else(Vector::zeros),
                             (u, _) => Vector::new(x[u as usize + 2 * m], x[u as usize + 2 * m + 1]),
                         };
-                        let (v, s) = (&self.reference.bubble[m * k..], &self.reference.bubble_slope[m * k..]);
-                        for i in 0..k {
-                            cx[i] += c.x * v[i];
-                            cy[i] += c.y * v[i];
-                            dx[i] += c.x * s[i];
-                            dy[i] += c.y * s[i];
-                        }
+                        add(&mut own, c, &reference.bubble[m * L..], &reference.bubble_slope[m * L..]);
                     }
                 }
                 Shape::Boundary { chain, unknowns, offsets, nodes, .. } => {
@@ -63,28 +61,47 @@ impl Problem<'_> {
                         return false;
                     }
                     let chain = &self.boundary.chains[chain as usize];
-                    let n = self.reference.nodes.len();
-                    let own = &mut self.nodes[nodes as usize..nodes as usize + n];
-                    walk(chain, start, end - start, &self.reference.nodes, |i, p, t| own[i] = [p, t]);
-                    out.fill(0.0);
-                    for (i, [p, _]) in own.iter().enumerate() {
-                        let v = &self.reference.lagrange[i * k..(i + 1) * k];
-                        let s = &self.reference.lagrange_slope[i * k..(i + 1) * k];
-                        for j in 0..k {
-                            out[j] += p.x * v[j];
-                            out[k + j] += p.y * v[j];
-                            out[2 * k + j] += p.x * s[j];
-                            out[3 * k + j] += p.y * s[j];
-                        }
+                    let n = reference.nodes.len();
+                    let list = &mut self.nodes[nodes as usize..nodes as usize + n];
+                    walk(
+                        chain,
+                        [start, end - start],
+                        hint,
+                        &reference.nodes,
+                        #[inline(always)]
+                        |first, four: Four| {
+                            for (k, node) in list[first..].iter_mut().take(FOUR).enumerate() {
+                                let Four { point: p, slope: t } = &four;
+                                *node = [Vector::new(p[0][k], p[1][k]), Vector::new(t[0][k], t[1][k])];
+                            }
+                        },
+                    );
+                    for (i, [p, _]) in list.iter().enumerate() {
+                        add(&mut own, *p, &reference.lagrange[i * L..], &reference.lagrange_slope[i * L..]);
                     }
                 }
+            }
+            for (out, own) in out.chunks_exact_mut(L).zip(&own) {
+                out.copy_from_slice(own);
             }
         }
         true
     }
 }
 
+/// Adds a shape of value `c` to values and slopes.
+#[inline(always)]
+fn add<const L: usize>(own: &mut [[f64; L]; 4], c: Vector, value: &[f64], slope: &[f64]) {
+    for ((k, v), s) in (0..L).zip(&value[..L]).zip(&slope[..L]) {
+        own[0][k] += c.x * v;
+        own[1][k] += c.y * v;
+        own[2][k] += c.x * s;
+        own[3][k] += c.y * s;
+    }
+}
+
 /// Arc lengths of a boundary edge's ends.
+#[inline(always)]
 pub(super) fn arc_lengths(x: &[f64], unknowns: [u32; 2], offsets: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|i| if unknowns[i] == NONE { offsets[i] } else { offsets[i] + x[unknowns[i] as usize] })
 }

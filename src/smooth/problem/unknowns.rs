@@ -84,10 +84,12 @@ impl<'a> Problem<'a> {
             samples: Vec::new(),
             adjoint: Vec::new(),
             nodes: Vec::new(),
+            hints: Vec::new(),
             unknowns: Vec::new(),
             scales: Default::default(),
             grid: DECISION_GRID,
             measure: Measure::Shape(2),
+            inverted: 0,
             scaled_jacobian: 0.0,
             mean_scaled_jacobian: 0.0,
             error_ratio: 0.0,
@@ -119,11 +121,11 @@ impl<'a> Problem<'a> {
                 energy: 1.0,
             });
         }
-        let k4 = 4 * reference.samples.len();
-        problem.samples = vec![0.0; problem.edges.len() * k4];
+        problem.samples = vec![0.0; problem.edges.len() * 4 * reference.lanes];
         problem.adjoint = problem.samples.clone();
+        problem.hints = vec![0; problem.edges.len()];
         let unknowns = std::mem::take(&mut problem.unknowns);
-        problem.sample(&unknowns, true, Some(mesh));
+        problem.sample_all(&unknowns, true, Some(mesh));
         problem.unknowns = unknowns;
         problem.refresh();
         problem
