@@ -16,6 +16,7 @@ mod delaunay;
 mod element_size;
 mod given;
 mod locate;
+mod place_tree;
 mod sampling;
 mod size_field;
 mod size_samples;
