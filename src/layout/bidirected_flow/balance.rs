@@ -11,18 +11,23 @@ const ROW_PENALTY: i64 = 1_000_000_000;
 /// Searches from all imbalances at once go on while one settles this share, 1 in so many, of them.
 const TOGETHER_WORTH: u64 = 64;
 
+/// Cost of a walk that nobody looked for to the end.
+pub(super) const TOO_DEAR: i64 = i64::MAX;
+
 /// Cost and steps of a walk; or, if there is none, the states that were reached.
 pub(super) type Walk = Result<(i64, Vec<Step>), Vec<u32>>;
 
 impl BidirectedFlow {
     /// Cheapest walk from `start` to a state that `is_goal` accepts; marginal costs below 0 count as 0.
     /// `banned` variables are not lowered, and rows that have nothing to spare at a high price
-    /// only (they are satisfied anew afterwards). `Err`: the states that were reached.
+    /// only (they are satisfied anew afterwards). A walk that costs `too_dear` or more is none: it comes as
+    /// [`TOO_DEAR`] without steps. `Err`: the states that were reached.
     pub(super) fn search(
         &mut self,
         start: u32,
         is_goal: impl Fn(&Self, u32) -> bool,
         banned: &[u32],
+        too_dear: i64,
     ) -> Walk {
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.round += 1;
@@ -38,6 +43,10 @@ impl BidirectedFlow {
         while let Some(Reverse((d, s))) = heap.pop() {
             if scratch.done[s as usize] {
                 continue;
+            }
+            if d >= too_dear {
+                found = Some((TOO_DEAR, start));
+                break;
             }
             scratch.done[s as usize] = true;
             if s != start && is_goal(self, s) {
@@ -192,7 +201,7 @@ impl BidirectedFlow {
                 let goal = |flow: &Self, s: u32| flow.settles(e, s);
                 let mut banned = Vec::new();
                 loop {
-                    match self.search(start, goal, &banned) {
+                    match self.search(start, goal, &banned, TOO_DEAR) {
                         Err(states) => return Err(Self::obstruction(&states)),
                         Ok((_, steps)) => {
                             let sum = Self::summed(&steps);

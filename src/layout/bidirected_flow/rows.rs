@@ -1,14 +1,14 @@
 //! General rows: satisfied one after the other, then chosen better.
 
-use super::balance::Walk;
+use super::balance::{Walk, TOO_DEAR};
 use super::{BidirectedFlow, Obstruction, Step};
 
 /// Most work of [`BidirectedFlow::polish`]: trials times variables.
 const POLISH_WORK: usize = 30_000;
 
 impl BidirectedFlow {
-    /// Cheapest closed walk that raises variable `a` by one.
-    fn raising(&mut self, a: u32) -> Walk {
+    /// Cheapest closed walk that raises variable `a` by one, if it costs less than `too_dear`.
+    fn raising(&mut self, a: u32, too_dear: i64) -> Walk {
         let [tail, head] = self.variables[a as usize].ends;
         let (start, goal) = (self.state(head, head.sign), self.state(tail, -tail.sign));
         let own = self.marginal(a as usize, 1);
@@ -18,7 +18,11 @@ impl BidirectedFlow {
         // Lowering the variable again would undo the walk.
         let mut banned = vec![a];
         loop {
-            let (cost, mut steps) = self.search(start, |_, s| s == goal, &banned)?;
+            let left = too_dear.saturating_sub(own);
+            let (cost, mut steps) = self.search(start, |_, s| s == goal, &banned, left)?;
+            if cost == TOO_DEAR {
+                return Ok((TOO_DEAR, Vec::new()));
+            }
             steps.push((a, 1));
             let sum = Self::summed(&steps);
             let low = self.too_low(&sum);
@@ -51,7 +55,8 @@ impl BidirectedFlow {
             let mut best: Option<(i64, Vec<Step>)> = None;
             let mut seen = Vec::new();
             for a in self.rows[r].variables.clone() {
-                match self.raising(a) {
+                let known = best.as_ref().map_or(TOO_DEAR, |b| b.0);
+                match self.raising(a, known) {
                     Err(states) => seen.extend(states),
                     Ok(walk) => {
                         if best.as_ref().is_none_or(|b| walk.0 < b.0) {
@@ -101,7 +106,8 @@ impl BidirectedFlow {
                         self.restore(&free);
                         let mut found = true;
                         while found && self.row_sums[r] < row.at_least {
-                            found = self.raising(a).map(|walk| self.apply_counting(&walk.1)).is_ok();
+                            found =
+                                self.raising(a, TOO_DEAR).map(|walk| self.apply_counting(&walk.1)).is_ok();
                         }
                         if found && self.satisfy_rows().is_ok() {
                             self.improve();
