@@ -21,18 +21,10 @@ import numpy as np
 
 import gmsh_meshes
 import quadrel_meshes
-from domains import Domain
-from poisson import basis, lobatto, solve
+from domains import DOMAINS, Domain
+from poisson import basis, lobatto, scaled_jacobian, solve
 
 ROOT = Path(__file__).resolve().parents[2]
-DOMAINS = (
-    "mech/unit-circle",
-    "hohq/GingerbreadMan",
-    "hohq/Pill",
-    "hohq/NACA0012",
-    "hohq/ABAQUS_IceCreamCone",
-    "mech/turek-hron-fsi",
-)
 ORDERS = (4, 5, 6, 7, 8, 9, 10)
 TOLERANCES = (1e-4, 1e-6, 1e-8)
 # Largest sizes as shares of the diagonal. Gmsh takes them at the points of the curves and, with the second list, as
@@ -51,15 +43,6 @@ INVALID = "Jacobian not positive"
 NEAR, LEAST_ERROR = 1.5, 1e-8
 OPTIMISERS = (4, 2)
 COLUMNS = ("domain", "tool", "settings", "order", "elements", "unknowns", "scaled_jacobian", "boundary", "error", "why")
-
-
-def scaled_jacobian(mesh):
-    """The least one on a grid of 2N + 1 points a direction, corners included."""
-    value, slope = basis(lobatto(mesh.order), np.linspace(-1, 1, 2 * mesh.order + 1))
-    a = np.einsum("qi,rj,eijc->eqrc", slope, value, mesh.places)
-    b = np.einsum("qi,rj,eijc->eqrc", value, slope, mesh.places)
-    product = np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1)
-    return float(np.min((a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]) / np.maximum(product, 1e-300)))
 
 
 class Judge:

@@ -12,6 +12,15 @@ import numpy as np
 from scipy.interpolate import BSpline
 from scipy.spatial import cKDTree
 
+# The domains of the benchmarks, in tests/domains.
+DOMAINS = (
+    "mech/unit-circle",
+    "hohq/GingerbreadMan",
+    "hohq/Pill",
+    "hohq/NACA0012",
+    "hohq/ABAQUS_IceCreamCone",
+    "mech/turek-hron-fsi",
+)
 # Samples of a curve from which Newton's iteration finds the nearest point.
 SAMPLES = 20000
 # Largest gap between points along a curve, as a share of its length, at which they are said to follow it.

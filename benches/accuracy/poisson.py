@@ -129,3 +129,12 @@ def solve(mesh, exact, laplacian):
         error += np.sum((whole[k : k + BATCH] @ both.T - wanted) ** 2 * determinant * weight)
         norm += np.sum(wanted**2 * determinant * weight)
     return float(np.sqrt(error / norm))
+
+
+def scaled_jacobian(mesh):
+    """The least one on a grid of 2N + 1 points a direction, corners included."""
+    value, slope = basis(lobatto(mesh.order), np.linspace(-1, 1, 2 * mesh.order + 1))
+    a = np.einsum("qi,rj,eijc->eqrc", slope, value, mesh.places)
+    b = np.einsum("qi,rj,eijc->eqrc", value, slope, mesh.places)
+    product = np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1)
+    return float(np.min((a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]) / np.maximum(product, 1e-300)))

@@ -25,31 +25,14 @@ sys.path.insert(0, str(ROOT / "benches/accuracy"))
 import numpy as np
 
 import gmsh_meshes
-from domains import Domain
-from poisson import basis, lobatto
+from domains import DOMAINS, Domain
+from poisson import basis, lobatto, scaled_jacobian
 
-DOMAINS = (
-    "mech/unit-circle",
-    "hohq/GingerbreadMan",
-    "hohq/Pill",
-    "hohq/NACA0012",
-    "hohq/ABAQUS_IceCreamCone",
-    "mech/turek-hron-fsi",
-)
 LEAST_SCALED_JACOBIAN = 0.1
 # Sizes as shares of the diagonal, coarse to fine, and elements a full turn.
 SHARES, CURVATURES = (1, 2, 4, 8, 16, 32, 64), (0, 10)
 # Distances of the boundary below this share of the diagonal count as none.
 EXACT = 1e-9
-
-
-def scaled_jacobian(mesh):
-    """The least one on a grid of 2N + 1 points a direction, corners included."""
-    value, slope = basis(lobatto(mesh.order), np.linspace(-1, 1, 2 * mesh.order + 1))
-    a = np.einsum("qi,rj,eijc->eqrc", slope, value, mesh.places)
-    b = np.einsum("qi,rj,eijc->eqrc", value, slope, mesh.places)
-    product = np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1)
-    return float(np.min((a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]) / np.maximum(product, 1e-300)))
 
 
 def boundary(domain, mesh):
