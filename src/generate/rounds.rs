@@ -21,6 +21,8 @@ use std::collections::HashMap;
 const ROUNDS: usize = 5;
 /// Element evaluations (some microseconds each at order 5) after which no further round or attempt begins.
 pub(super) const MOST_WORK: u64 = 8_000_000;
+/// The same for each quad, where that is more: of meshes so large a few elements stay inverted to the end.
+const WORK_PER_QUAD: u64 = 300;
 /// Edge lengths in wanted sizes above which a chord is divided.
 const TOO_LONG: f64 = 2.5;
 /// Quads above which strips finer than wanted are ended before anything is optimised, ...
@@ -119,7 +121,7 @@ pub(super) fn refine_and_smooth(
                 }
             }
         }
-        if !marked.contains(&true) || mesh.quads.len() > most || watch.work > MOST_WORK {
+        if !marked.contains(&true) || mesh.quads.len() > most || watch.work > most_work(&mesh) {
             break;
         }
         mesh = watch.run(stages, Stage::Refine, |_| {
@@ -139,7 +141,7 @@ pub(super) fn refine_and_smooth(
         return Err(Error::InvalidElement { jacobian: quality.min_scaled_jacobian, at });
     }
     let fine = mesh.clone();
-    if coarsens && watch.work <= MOST_WORK {
+    if coarsens && watch.work <= most_work(&mesh) {
         mesh = fewer_elements(mesh, &optimiser, floor, limit, watch, stages)?;
     }
     let coarse = mesh.clone();
@@ -179,6 +181,11 @@ pub(super) fn refine_and_smooth(
         return Err(Error::Layout { reason, at: None });
     }
     Ok(Refined { mesh, fine, coarse })
+}
+
+/// Work after which no further round begins on `mesh`, nor its coarsening.
+fn most_work(mesh: &QuadMesh) -> u64 {
+    MOST_WORK.max(WORK_PER_QUAD * mesh.quads.len() as u64)
 }
 
 /// The mesh with strips ended that are much finer than wanted, if that pays: it costs irregular vertices.

@@ -19,6 +19,8 @@ const MOST: f64 = 0.7;
 /// Rings from which a part that stays tangled is tried again with its vertices at the means of their neighbours:
 /// where some lie outside the domain, no step that keeps the others apart brings them back.
 const FLAT_FROM: usize = 4;
+/// Work for each quad of a mesh that is larger than all others; a tenth of its elements may be inverted.
+const WORK_PER_QUAD: u64 = 150;
 /// Quads above which the whole mesh is not untangled for a few elements ...
 const MANY: usize = 10_000;
 /// ... and the share of them that is few. What the regularised energy does to all others first, making them round,
@@ -61,7 +63,7 @@ pub(super) fn untangle_locally(
         }
         let mut left = Vec::new();
         for part in parts(mesh, &active) {
-            if *work > MOST_WORK {
+            if *work > MOST_WORK.max(WORK_PER_QUAD * mesh.quads.len() as u64) {
                 return inverted.len();
             }
             let before = among(elements, mesh, &part);
