@@ -37,7 +37,7 @@ pub(super) fn fewer_elements(
         }
         mesh = fewer;
         note(stages, optimiser, &mesh, "coarsen");
-        mesh = smoothed(mesh, optimiser, floor, limit, watch, stages)?;
+        mesh = smoothed(mesh, optimiser, limits, watch, stages)?;
     }
     Ok(mesh)
 }
@@ -46,14 +46,14 @@ pub(super) fn fewer_elements(
 fn smoothed(
     mut mesh: QuadMesh,
     optimiser: &Optimiser,
-    floor: f64,
-    limit: Option<SizeLimit>,
+    limits: Limits,
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<QuadMesh> {
     let mut before = optimiser.quality(&mesh);
-    if before.min_scaled_jacobian < floor {
-        watch.work += watch.run(stages, Stage::Smooth, |_| Ok(optimiser.lift(&mut mesh, floor)))?;
+    if before.min_scaled_jacobian < limits.scaled_jacobian {
+        watch.work +=
+            watch.run(stages, Stage::Smooth, |_| Ok(optimiser.lift(&mut mesh, limits.scaled_jacobian)))?;
         note(stages, optimiser, &mesh, "lift");
         before = optimiser.quality(&mesh);
     }
@@ -61,7 +61,7 @@ fn smoothed(
     watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut smoother, None, Effort::Final)))?;
     let after = optimiser.quality(&smoother);
     let too_large =
-        |mesh: &QuadMesh| limit.is_some_and(|limit| limit.too_long(mesh, TOO_LARGE).contains(&true));
+        |mesh: &QuadMesh| limits.sizes.is_some_and(|sizes| sizes.too_long(mesh, TOO_LARGE).contains(&true));
     if after.valid()
         && after.error_ratio <= before.error_ratio.max(1.0)
         && after.min_scaled_jacobian >= before.min_scaled_jacobian

@@ -116,8 +116,8 @@ impl<'a> SizeLimit<'a> {
             ratios = self.ratios(&divided);
             finer = Some(divided);
         }
-        let parts = chord_parts(&mesh, &wanted);
         if let Some(size) = size {
+            let parts = chord_parts(&mesh, &wanted);
             let more = resolved(&mesh, boundary, &parts, order, size, most);
             if more != parts {
                 finer = Some(divide_chords(&mesh, boundary, &more, order)?);

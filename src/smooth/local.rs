@@ -53,6 +53,7 @@ pub(super) fn untangle_locally(
     let around = mesh.quads_around();
     let all: Vec<u32> = (0..mesh.quads.len() as u32).collect();
     let mut inverted = among(elements, mesh, &all);
+    let most_work = MOST_WORK.max(WORK_PER_QUAD * mesh.quads.len() as u64);
     for rings in RINGS {
         if inverted.is_empty() {
             break;
@@ -63,33 +64,47 @@ pub(super) fn untangle_locally(
         }
         let mut left = Vec::new();
         for part in parts(mesh, &active) {
-            if *work > MOST_WORK.max(WORK_PER_QUAD * mesh.quads.len() as u64) {
+            if *work > most_work {
                 return inverted.len();
             }
-            let before = among(elements, mesh, &part);
-            let mut best = (before, Saved::of(mesh, &part));
-            for flat in [false, true] {
-                if best.0.is_empty() || (flat && rings < FLAT_FROM) {
-                    break;
-                }
-                let schedule = elements.schedule(effort, part.len());
-                let mut problem = elements.problem(mesh, &part);
-                if flat {
-                    problem.flatten(FLATTEN_SWEEPS);
-                }
-                untangle(&mut problem, &mut Default::default(), &schedule, work);
-                problem.store(mesh);
-                let after = among(elements, mesh, &part);
-                if after.len() < best.0.len() || (!flat && after.len() == best.0.len()) {
-                    best = (after, Saved::of(mesh, &part));
-                }
-            }
-            best.1.restore(mesh);
-            left.extend(best.0);
+            left.extend(untangle_part(elements, mesh, &part, rings >= FLAT_FROM, effort, work));
         }
         inverted = left;
     }
     inverted.len()
+}
+
+/// Untangles the quads `part` as they are, then `flat` as well if that leaves some inverted; the better of both stays.
+/// The inverted ones that are left.
+fn untangle_part(
+    elements: &impl Elements,
+    mesh: &mut QuadMesh,
+    part: &[u32],
+    flat: bool,
+    effort: Effort,
+    work: &mut u64,
+) -> Vec<u32> {
+    let mut best = (among(elements, mesh, part), Saved::of(mesh, part));
+    let schedule = elements.schedule(effort, part.len());
+    let starts: &[bool] = if flat { &[false, true] } else { &[false] };
+    for flat in starts {
+        if best.0.is_empty() {
+            break;
+        }
+        let mut problem = elements.problem(mesh, part);
+        if *flat {
+            problem.flatten(FLATTEN_SWEEPS);
+        }
+        untangle(&mut problem, &mut Default::default(), &schedule, work);
+        problem.store(mesh);
+        let after = among(elements, mesh, part);
+        // As many inverted ones, but less so, are progress; flattened ones have lost their places.
+        if after.len() < best.0.len() || (!flat && after.len() == best.0.len()) {
+            best = (after, Saved::of(mesh, part));
+        }
+    }
+    best.1.restore(mesh);
+    best.0
 }
 
 fn among(elements: &impl Elements, mesh: &QuadMesh, quads: &[u32]) -> Vec<u32> {

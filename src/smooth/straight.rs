@@ -63,13 +63,13 @@ pub(super) fn untangle_straight(
     let mut straight = mesh.clone();
     straight.edges.iter_mut().for_each(|e| e.bubbles.clear());
     let left = untangle_locally(&elements, &mut straight, effort, work);
-    let schedule = effort.schedule_for_straight(mesh.quads.len());
-    let mut problem = Problem::new(boundary, linear, None, &straight, None, false, straightness);
-    let mut lbfgs = Lbfgs::default();
     if left > 0 && few_of_many(left, mesh.quads.len()) {
         *mesh = straight;
         return;
     }
+    let schedule = effort.schedule_for_straight(mesh.quads.len());
+    let mut problem = Problem::new(boundary, linear, None, &straight, None, false, straightness);
+    let mut lbfgs = Lbfgs::default();
     if left > 0 && !untangle(&mut problem, &mut lbfgs, &schedule, work) {
         return;
     }
