@@ -3,8 +3,8 @@
 mod shapes;
 
 use quadrel::base_mesh::{triangulate, usual_size, Request, Triangulation};
-use quadrel::domain::{Boundary, Place};
-use quadrel::numerics::{cross, left_normal, Point};
+use quadrel::domain::{Boundary, Place, Sample};
+use quadrel::numerics::{cross, left_normal, Point, Vector};
 use shapes::{all, boundary, disc, near_hole, polygon, square};
 
 fn mesh(boundary: &Boundary) -> Triangulation {
@@ -151,10 +151,9 @@ fn check_sees_defects() {
 #[test]
 fn crossing_curves_are_refused_with_their_place() {
     let mut b = near_hole(0.1);
-    for sample in &mut b.chains[1].samples {
-        sample.point.x += 0.2;
-        sample.point.y += 0.2;
-    }
+    let aside = Vector::new(0.2, 0.2);
+    b.chains[1].samples =
+        b.chains[1].samples.iter().map(|x| Sample { point: x.point + aside, ..*x }).collect();
     let error = triangulate(&b, &Request::default()).unwrap_err();
     assert_eq!(error.name(), "base_mesh");
     assert!(error.place().is_some());

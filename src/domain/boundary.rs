@@ -7,7 +7,7 @@
 //! between them a cubic Hermite interpolant stands in for the curve. The tables are so
 //! dense that its error is far below the tolerance; the final mesh is evaluated on the exact curves.
 
-use crate::domain::Frame;
+use crate::domain::{ChainTable, Frame};
 use crate::numerics::{Point, Vector};
 
 /// A point of the boundary: arc length `s` along chain `chain`, in [0, length].
@@ -72,9 +72,8 @@ pub struct Chain {
     /// The junctions at its ends; `None`: the chain is a whole loop and closed.
     pub ends: Option<[u32; 2]>,
     pub length: f64,
-    /// Table from s = 0 to s = length, ascending, at least two entries. Where two segments join
-    /// the sample is there twice, once for each.
-    pub samples: Vec<Sample>,
+    /// Table from s = 0 to s = length.
+    pub samples: ChainTable,
     /// Arc lengths strictly inside where the curve is less smooth (joints and knots), ascending.
     pub breaks: Vec<f64>,
 }
@@ -107,70 +106,16 @@ impl Chain {
         }
     }
 
-    /// Index of the table interval that holds `s`, already wrapped.
-    fn interval(&self, s: f64) -> usize {
-        let i = self.samples.partition_point(|x| x.s <= s);
-        let mut i = i.clamp(1, self.samples.len() - 1) - 1;
-        // The double samples at joints bound an interval of no length.
-        while i > 0 && self.samples[i + 1].s <= self.samples[i].s {
-            i -= 1;
-        }
-        i
-    }
-
-    /// The same, looked for where the length of interval `i` leads to expect it (tables are even but for slow
-    /// changes), then around there in ever longer strides, then by bisection.
-    #[inline(always)]
-    pub(crate) fn interval_from(&self, i: usize, s: f64) -> usize {
-        let table = &self.samples;
-        let last = table.len() - 2;
-        let from = i.min(last);
-        let steps = (s - table[from].s) / (table[from + 1].s - table[from].s);
-        // Out of range saturates, as does what an interval of no length leads to expect.
-        let (mut i, mut stride) = (((from as f64 + steps) as usize).min(last), 1);
-        if table[i].s > s {
-            while i > 0 && table[i].s > s {
-                i = i.saturating_sub(stride);
-                stride *= 2;
-            }
-            i += table[i + 1..(i + stride).min(last + 1)].partition_point(|x| x.s <= s);
-        } else {
-            while i < last {
-                let probe = (i + stride).min(last);
-                if table[probe].s <= s {
-                    i = probe;
-                    stride *= 2;
-                } else {
-                    i += table[i + 1..probe].partition_point(|x| x.s <= s);
-                    break;
-                }
-            }
-        }
-        // The double samples at joints bound an interval of no length.
-        while i > 0 && table[i + 1].s <= table[i].s {
-            i -= 1;
-        }
-        i
-    }
-
     /// The two table entries around `s`, already wrapped; they lie on one segment.
     pub(crate) fn around(&self, s: f64) -> (&Sample, &Sample) {
-        let i = self.interval(s);
+        let i = self.samples.interval(s);
         (&self.samples[i], &self.samples[i + 1])
     }
 
     /// Point and derivative d/ds (nearly of unit length) at arc length `s`.
     pub fn evaluate(&self, s: f64) -> (Point, Vector) {
         let s = self.wrap(s);
-        self.evaluate_in(self.interval(s), s)
-    }
-
-    /// The same as [`Chain::evaluate`] for a walk along the chain: `hint` is where the last point was
-    /// found (0 at first), and a point near it is found in a few steps.
-    pub fn evaluate_from(&self, s: f64, hint: &mut usize) -> (Point, Vector) {
-        let s = self.wrap(s);
-        *hint = self.interval_from(*hint, s);
-        self.evaluate_in(*hint, s)
+        self.evaluate_in(self.samples.interval(s), s)
     }
 
     /// Point and derivative at `s` by the table interval `i` that holds it.
@@ -199,7 +144,7 @@ impl Chain {
     /// Signed curvature at `s`, linear between the table's entries.
     pub fn curvature(&self, s: f64) -> f64 {
         let s = self.wrap(s);
-        let i = self.interval(s);
+        let i = self.samples.interval(s);
         let (a, b) = (&self.samples[i], &self.samples[i + 1]);
         a.curvature + (b.curvature - a.curvature) * (s - a.s) / (b.s - a.s)
     }
@@ -207,7 +152,7 @@ impl Chain {
     /// The segment of the loop and its parameter at arc length `s`.
     pub fn segment_parameter(&self, s: f64) -> (u32, f64) {
         let s = self.wrap(s);
-        let i = self.interval(s);
+        let i = self.samples.interval(s);
         let (a, b) = (&self.samples[i], &self.samples[i + 1]);
         (a.segment, a.t + (b.t - a.t) * (s - a.s) / (b.s - a.s))
     }

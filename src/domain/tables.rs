@@ -2,6 +2,7 @@
 
 use crate::domain::boundary::{Boundary, Chain, Junction, Sample};
 use crate::domain::canonical::canonical;
+use crate::domain::chain_table::ChainTable;
 use crate::domain::planar_domain::Domain;
 use crate::domain::segment_table::{segment_table, Entry};
 use crate::error::Result;
@@ -41,6 +42,7 @@ impl Boundary {
         // A loop without a corner may still have junctions where the name changes.
         let start = (0..n).map(|i| (start + i) % n).find(|&i| is_junction[i]).unwrap_or(start);
         let first_chain = self.chains.len() as u32;
+        let mut samples: Vec<Vec<Sample>> = Vec::new();
         for i in (0..n).map(|i| (start + i) % n) {
             let mut table = segment_table(&segments[i], &self.frame)?;
             // Where segments join both tables hold the very same point.
@@ -55,13 +57,17 @@ impl Boundary {
                     name,
                     ends: None,
                     length: 0.0,
-                    samples: Vec::new(),
+                    samples: ChainTable::default(),
                     breaks: Vec::new(),
                 });
+                samples.push(Vec::new());
             }
-            if let Some(chain) = self.chains.last_mut() {
-                chain.append(&table, i as u32);
+            if let (Some(chain), Some(samples)) = (self.chains.last_mut(), samples.last_mut()) {
+                chain.append(&table, i as u32, samples);
             }
+        }
+        for (chain, samples) in self.chains[first_chain as usize..].iter_mut().zip(samples) {
+            chain.samples = samples.into();
         }
         let chains: Vec<u32> = (first_chain..self.chains.len() as u32).collect();
         if is_junction[start] {
@@ -85,8 +91,8 @@ impl Boundary {
 }
 
 impl Chain {
-    /// Appends a segment's table at the chain's end.
-    fn append(&mut self, table: &[Entry], segment: u32) {
+    /// Appends a segment's table at the chain's end, its samples to `samples`.
+    fn append(&mut self, table: &[Entry], segment: u32, samples: &mut Vec<Sample>) {
         let offset = self.length;
         if offset > 0.0 {
             self.breaks.push(offset);
@@ -96,7 +102,7 @@ impl Chain {
             if e.is_break {
                 self.breaks.push(s);
             }
-            self.samples.push(Sample {
+            samples.push(Sample {
                 s,
                 point: e.point,
                 tangent: e.tangent,

@@ -1,5 +1,4 @@
-//! Evaluation of a chain at many ascending arc lengths: one search, then steps along the table, four points at
-//! once.
+//! Evaluation of a chain at many arc lengths, four points at once.
 
 use super::boundary::Chain;
 
@@ -14,18 +13,16 @@ pub(crate) struct Four {
 }
 
 /// Calls `out` for each four of the arc lengths `start + length · parameters[k]`, with the place of the first
-/// among the parameters, which ascend in [0, 1]; a last four may be incomplete and ends in copies of its last.
-/// Same values as [`Chain::evaluate`]. `hint` is the interval of the table that the walk began in the last time, or 0.
+/// among the parameters in [0, 1]; a last four may be incomplete and ends in copies of its last.
+/// Same values as [`Chain::evaluate`].
 #[inline(always)]
 pub(crate) fn walk(
     chain: &Chain,
     [start, length]: [f64; 2],
-    hint: &mut usize,
     parameters: &[f64],
     mut out: impl FnMut(usize, Four),
 ) {
     let table = &chain.samples;
-    let mut i = *hint;
     for (first, four) in (0..).step_by(FOUR).zip(parameters.chunks(FOUR)) {
         let mut x = [0.0; FOUR];
         let mut h = [1.0; FOUR];
@@ -34,10 +31,7 @@ pub(crate) fn walk(
             ([[0.0; FOUR]; 2], [[0.0; FOUR]; 2], [[0.0; FOUR]; 2], [[0.0; FOUR]; 2]);
         for k in 0..FOUR {
             let s = chain.wrap(start + length * four[k.min(four.len() - 1)]);
-            i = chain.interval_from(i, s);
-            if first + k == 0 {
-                *hint = i;
-            }
+            let i = table.interval(s);
             let (a, b) = (&table[i], &table[i + 1]);
             h[k] = b.s - a.s;
             x[k] = (s - a.s) / h[k];

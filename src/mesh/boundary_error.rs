@@ -123,11 +123,10 @@ impl BoundaryError {
         }
         let mut nodes = [Point::origin(); MAX_NODES];
         let nodes = &mut nodes[..self.lobatto.nodes.len()];
-        let mut hint = 0;
         for (node, t) in nodes.iter_mut().zip(&self.parameters) {
-            *node = chain.evaluate_from(start + t * length, &mut hint).0;
+            *node = chain.point(start + t * length);
         }
-        let curve = |s: f64| Ok::<_, std::convert::Infallible>(chain.evaluate_from(start + s, &mut hint));
+        let curve = |s: f64| Ok::<_, std::convert::Infallible>(chain.evaluate(start + s));
         match self.measure(nodes, length, &breaks, curve) {
             Ok(e) => e,
             Err(never) => match never {},

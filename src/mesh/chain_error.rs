@@ -31,12 +31,10 @@ impl NullaryFnOnce for SquaredError<'_> {
         let SquaredError { error, chain, start, length, breaks } = self;
         let modal = error.modal();
         let n = error.parameters().len();
-        let mut hint = 0;
         let mut nodes = [Point::origin(); MAX_NODES];
         walk(
             chain,
             [start, length],
-            &mut hint,
             error.parameters(),
             #[inline(always)]
             |first, four: Four| {
@@ -63,7 +61,6 @@ impl NullaryFnOnce for SquaredError<'_> {
                 walk(
                     chain,
                     [start, length],
-                    &mut hint,
                     &t,
                     #[inline(always)]
                     |_, four: Four| {

@@ -30,7 +30,7 @@ fn grid(m: usize, n: usize) -> (Boundary, QuadMesh) {
             };
             let ends = Some([k as u32, (k as u32 + 1) % 4]);
             let samples = vec![sample(0.0), sample(length)];
-            Chain { loop_index: 0, name: 0, ends, length, samples, breaks: vec![] }
+            Chain { loop_index: 0, name: 0, ends, length, samples: samples.into(), breaks: vec![] }
         })
         .collect();
     let junctions = (0..4).map(|k| Junction {

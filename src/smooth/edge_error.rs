@@ -18,13 +18,12 @@ pub(super) struct SquaredError {
 }
 
 /// For the edge that follows `chain` from `start` over `length`, with its nodes and the curve's
-/// derivatives there; `hint` as for [`walk`].
+/// derivatives there.
 #[inline(always)]
 pub(super) fn squared_error(
     reference: &Reference,
     chain: &Chain,
     [start, length]: [f64; 2],
-    hint: &mut usize,
     nodes: &[[Vector; 2]],
 ) -> SquaredError {
     let n = nodes.len();
@@ -32,7 +31,6 @@ pub(super) fn squared_error(
     walk(
         chain,
         [start, length],
-        hint,
         &reference.error_points,
         #[inline(always)]
         |first, four: Four| {

@@ -103,8 +103,6 @@ pub(super) struct Problem<'a> {
     adjoint: Vec<f64>,
     /// Point and derivative at the nodes of boundary edges.
     nodes: Vec<[Vector; 2]>,
-    /// For each edge on a chain the interval of the table that it began in.
-    hints: Vec<usize>,
     pub unknowns: Vec<f64>,
     pub scales: Scales,
     /// Spacing of the grid that unknowns stay on, in edge lengths.
@@ -347,7 +345,7 @@ mod tests {
                 Sample { s, point, tangent, curvature: 0.0, segment: 0, t: i as f64 / n as f64 }
             })
             .collect();
-        let chain = Chain { loop_index: 0, name: 0, ends: None, length: s, samples, breaks: vec![] };
+        let chain = Chain { loop_index: 0, name: 0, ends: None, length: s, samples: samples.into(), breaks: vec![] };
         let boundary = Boundary {
             frame: Frame::identity(),
             diagonal: 1.0,

@@ -55,7 +55,7 @@ fn edge_samples(boundary: &Boundary, reference: &Reference, mesh: &QuadMesh, edg
     if let Some(span) = edge.span {
         let mut out = vec![[Vector::zeros(); 2]; k];
         let chain = &boundary.chains[span.chain as usize];
-        walk(chain, [span.start, span.end - span.start], &mut 0, &reference.nodes, |first, four| {
+        walk(chain, [span.start, span.end - span.start], &reference.nodes, |first, four| {
             for i in first..(first + FOUR).min(reference.nodes.len()) {
                 let p = Vector::new(four.point[0][i - first], four.point[1][i - first]);
                 let value = &reference.lagrange[i * lanes..i * lanes + k];

@@ -276,7 +276,7 @@ impl Sector {
             let last = chain.samples.len() - 1;
             for (node, at) in nodes.into_iter().zip([0, last]) {
                 if let Node::Crossing(k) = node {
-                    chain.samples[at].point = crossings[k].point;
+                    chain.samples.move_point(at, crossings[k].point);
                 }
             }
         } else {
@@ -318,7 +318,7 @@ impl Sector {
             name: self.boundary.names.len() as u32 - 1,
             ends: None,
             length,
-            samples: vec![sample(0.0, from), sample(length, to)],
+            samples: vec![sample(0.0, from), sample(length, to)].into(),
             breaks: Vec::new(),
         });
         self.sources.push(Source::Axis(end));
@@ -366,5 +366,5 @@ fn part(chain: &Chain, start: f64, end: f64) -> Chain {
         samples.insert(0, at(start));
         samples.push(Sample { s: end - start, ..at(end) });
     }
-    Chain { length: end - start, samples, breaks, ..chain.clone() }
+    Chain { length: end - start, samples: samples.into(), breaks, ..chain.clone() }
 }

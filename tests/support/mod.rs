@@ -31,7 +31,7 @@ pub fn chain(curve: CurveFn, n: usize, closed: bool, knots: &[f64]) -> Chain {
         samples.push(Sample { s, point, tangent: d.normalize(), curvature: 0.0, segment: 0, t });
     }
     let ends = if closed { None } else { Some([0, 1]) };
-    Chain { loop_index: 0, name: 0, ends, length: s, samples, breaks }
+    Chain { loop_index: 0, name: 0, ends, length: s, samples: samples.into(), breaks }
 }
 
 /// A domain bounded by the given loops of chains. Every chain of a loop of several gets a junction

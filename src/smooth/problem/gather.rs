@@ -19,7 +19,7 @@ impl Problem<'_> {
         let mut extra = 0.0;
         gradient.fill(0.0);
         let adjoint = self.adjoint.chunks_exact(4 * L);
-        for ((edge, g), hint) in self.edges.iter().zip(adjoint).zip(&mut self.hints) {
+        for (edge, g) in self.edges.iter().zip(adjoint) {
             if !edge.moves {
                 continue;
             }
@@ -63,7 +63,7 @@ impl Problem<'_> {
                     ends[1] -= length_weight / now;
                     if self.tolerance.is_some() && weight > 0.0 {
                         let chain = &self.boundary.chains[chain as usize];
-                        let e2 = squared_error(reference, chain, [start, now], hint, own);
+                        let e2 = squared_error(reference, chain, [start, now], own);
                         let Some((b, slope)) = barrier(reference.order, e2.value, limit) else {
                             return f64::INFINITY;
                         };

@@ -71,7 +71,7 @@ impl Problem<'_> {
         self.error_ratio = 0.0;
         let Some(tolerance) = self.tolerance else { return };
         let (x, n) = (&self.unknowns, self.reference.nodes.len());
-        for (edge, hint) in self.edges.iter_mut().zip(&mut self.hints).filter(|(e, _)| e.moves) {
+        for edge in self.edges.iter_mut().filter(|e| e.moves) {
             let straight = edge.straight;
             if let Shape::Boundary { chain, unknowns, offsets, nodes, limit, weight, length } =
                 &mut edge.shape
@@ -96,7 +96,7 @@ impl Problem<'_> {
                     (ROOM * now, RESCUE_WEIGHT)
                 };
                 if now > NEGLIGIBLE * wanted {
-                    let seen = squared_error(self.reference, chain, [start, *length], hint, own).value.sqrt();
+                    let seen = squared_error(self.reference, chain, [start, *length], own).value.sqrt();
                     *limit *= seen / now;
                 }
             }

@@ -24,7 +24,7 @@ impl Problem<'_> {
             }
         }
         let samples = self.samples.chunks_exact_mut(4 * L);
-        for ((edge, out), hint) in self.edges.iter().zip(samples).zip(&mut self.hints) {
+        for (edge, out) in self.edges.iter().zip(samples) {
             if !((edge.moves || fixed) && edge.sampled) {
                 if let Shape::Boundary { unknowns, offsets, .. } = edge.shape {
                     let [start, end] = arc_lengths(x, unknowns, offsets);
@@ -66,7 +66,6 @@ impl Problem<'_> {
                     walk(
                         chain,
                         [start, end - start],
-                        hint,
                         &reference.nodes,
                         #[inline(always)]
                         |first, four: Four| {

@@ -84,7 +84,6 @@ impl<'a> Problem<'a> {
             samples: Vec::new(),
             adjoint: Vec::new(),
             nodes: Vec::new(),
-            hints: Vec::new(),
             unknowns: Vec::new(),
             scales: Default::default(),
             grid: DECISION_GRID,
@@ -123,7 +122,6 @@ impl<'a> Problem<'a> {
         }
         problem.samples = vec![0.0; problem.edges.len() * 4 * reference.lanes];
         problem.adjoint = problem.samples.clone();
-        problem.hints = vec![0; problem.edges.len()];
         let unknowns = std::mem::take(&mut problem.unknowns);
         problem.sample_all(&unknowns, true, Some(mesh));
         problem.unknowns = unknowns;
