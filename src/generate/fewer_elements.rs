@@ -5,7 +5,7 @@ use super::watch::Watch;
 use crate::error::Result;
 use crate::mesh::QuadMesh;
 use crate::progress::Stage;
-use crate::refine::{self, Limits, SizeLimit};
+use crate::refine::{self, Limits, Refusals, SizeLimit};
 use crate::smooth::{Effort, Optimiser};
 use crate::stages::Stages;
 
@@ -24,13 +24,14 @@ pub(super) fn fewer_elements(
     stages: &mut Stages,
 ) -> Result<QuadMesh> {
     let limits = Limits { sizes: limit, ..Limits::new(floor) };
+    let mut refusals = Refusals::default();
     for pass in 0..PASSES {
         if pass > 0 && mesh.quads.len() > MOST_AGAIN {
             break;
         }
         let progress = watch.coarsening();
         let fewer = watch.run(stages, Stage::Refine, |_| {
-            refine::coarsen(mesh.clone(), optimiser.boundary(), optimiser, limits, &progress)
+            refine::coarsen(mesh.clone(), optimiser.boundary(), optimiser, limits, &mut refusals, &progress)
         })?;
         if pass > 0 && fewer.quads.len() == mesh.quads.len() {
             break;
