@@ -46,6 +46,11 @@ enum class Subdivision : quadrel_subdivision {
   EqualError = QUADREL_SUBDIVISION_EQUAL_ERROR,
   Halving = QUADREL_SUBDIVISION_HALVING
 };
+enum class Effort : quadrel_effort {
+  Fast = QUADREL_EFFORT_FAST,
+  Default = QUADREL_EFFORT_DEFAULT,
+  Best = QUADREL_EFFORT_BEST
+};
 enum class Format : quadrel_format {
   Vtu = QUADREL_FORMAT_VTU,
   Msh = QUADREL_FORMAT_MSH,
@@ -260,6 +265,7 @@ class Options {
   Options& symmetry(bool kept) {
     return done(quadrel_options_set_symmetry(get(), kept ? QUADREL_SYMMETRY_KEPT : QUADREL_SYMMETRY_IGNORED));
   }
+  Options& effort(Effort e) { return done(quadrel_options_set_effort(get(), static_cast<quadrel_effort>(e))); }
   Options& max_element_size(double h) { return done(quadrel_options_set_max_element_size(get(), h)); }
   Options& size(Size at) {
     auto* user = new Size(std::move(at));

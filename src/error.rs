@@ -90,6 +90,11 @@ impl Error {
         }
     }
 
+    /// Whether it is the caller who ends the run, or a callback: another attempt would end the same way.
+    pub(crate) fn ends_a_run(&self) -> bool {
+        matches!(self, Error::Cancelled | Error::Callback { .. } | Error::SizeFunction { .. })
+    }
+
     /// Where in the domain (in the caller's coordinates), if the cause has a place.
     pub fn place(&self) -> Option<Point> {
         match self {

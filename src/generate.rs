@@ -8,6 +8,7 @@ mod blocks;
 mod fewer_elements;
 mod rounds;
 mod smooth_edges;
+mod starts;
 mod symmetric;
 mod watch;
 
@@ -50,6 +51,11 @@ const TOLERANCE_AIM: f64 = 0.97;
 /// ```
 pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Result<HighOrderMesh> {
     options.check()?;
+    starts::best_of_starts(domain, options, stages)
+}
+
+/// One mesh; the base mesh begins `finer` times finer than usual.
+fn one_mesh(domain: &Domain, options: &Options, finer: usize, stages: &mut Stages) -> Result<HighOrderMesh> {
     *stages = Stages::default();
     let mut watch = Watch::new(options);
 
@@ -73,6 +79,9 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
 
     let mut failure = None;
     let mut request = blocks::first_request(options, &boundary);
+    for _ in 0..finer {
+        blocks::refine(&mut request, &boundary);
+    }
     for attempt in 1..=attempts {
         stages.begin_attempt(attempt);
         // The stages speak of places in the canonical frame.
@@ -95,9 +104,7 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
         });
         match result {
             Ok(mesh) => return Ok(mesh),
-            Err(error @ (Error::Cancelled | Error::Callback { .. } | Error::SizeFunction { .. })) => {
-                return Err(error)
-            }
+            Err(error) if error.ends_a_run() => return Err(error),
             Err(error) => {
                 failure.get_or_insert(error);
             }

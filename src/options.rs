@@ -41,6 +41,19 @@ pub enum FieldMethod {
     Harmonic,
 }
 
+/// How much work fewer elements are worth. Validity, tolerance, quality floor and sizes hold with any.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Effort {
+    /// About half the time of [`Effort::Default`], for about 5 % more elements.
+    Fast,
+    /// What is removed is smoothed around there as far as it takes.
+    #[default]
+    Default,
+    /// The best of four meshes, from both cross fields and two base meshes: about four times the time, for about 3 %
+    /// fewer elements. [`Options::field`] says with which it begins.
+    Best,
+}
+
 /// How boundary edges are divided until the tolerance holds (step 7).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Subdivision {
@@ -106,6 +119,8 @@ pub struct Options {
     /// clearly worse. Not with [`element_size`](Self::element_size) or
     /// [`base_triangulation`](Self::base_triangulation), which know nothing of them.
     pub symmetry: bool,
+    /// How much work fewer elements are worth.
+    pub effort: Effort,
     /// Most elements allowed.
     pub max_elements: usize,
     /// Called now and then with the stage and the share done; it can cancel.
@@ -126,6 +141,7 @@ impl Default for Options {
             base_triangulation: None,
             quality_floor: 0.8,
             symmetry: true,
+            effort: Effort::Default,
             max_elements: 1_000_000,
             progress: Progress::default(),
         }

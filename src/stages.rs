@@ -88,7 +88,7 @@ pub struct Stages {
     pub attempts: usize,
     /// The rounds of the last attempt.
     pub rounds: Vec<Round>,
-    /// Seconds spent in each stage, in the order of [`Stage::ALL`].
+    /// Seconds spent in each stage, in the order of [`Stage::ALL`], those of meshes that were not kept included.
     pub seconds: [f64; 9],
     /// The last stage that finished.
     pub reached: Option<Stage>,

@@ -7,7 +7,7 @@ use quadrel::domain::Place;
 use quadrel::mesh::BoundaryTolerance;
 use quadrel::numerics::Vector;
 use quadrel::options::Norm;
-use quadrel::smooth::{equal_spacing, Effort, Optimiser};
+use quadrel::smooth::{equal_spacing, Care, Optimiser};
 
 #[test]
 fn disc_of_twelve() {
@@ -16,7 +16,7 @@ fn disc_of_twelve() {
     let tolerance = BoundaryTolerance { norm: Norm::L2, order: 5, value: 1e-5 };
     let optimiser = Optimiser::new(&b, 5, Some(tolerance));
     let before = optimiser.quality(&m);
-    let outcome = optimiser.optimise(&mut m, None, Effort::Full);
+    let outcome = optimiser.optimise(&mut m, None, Care::Full);
     let after = optimiser.quality(&m);
     assert!(outcome.valid);
     assert!(after.min_scaled_jacobian >= 0.75, "{}", after.min_scaled_jacobian);
@@ -32,7 +32,7 @@ fn scrambled_grids_are_cured() {
             scramble(&mut m, low, high, seed);
             let optimiser = Optimiser::new(&b, order, None);
             assert!(!optimiser.quality(&m).valid(), "the start must be tangled");
-            let outcome = optimiser.optimise(&mut m, None, Effort::Full);
+            let outcome = optimiser.optimise(&mut m, None, Care::Full);
             assert!(outcome.valid, "seed {seed}: {outcome:?}");
             assert!(outcome.min_scaled_jacobian > 0.6, "seed {seed}: {outcome:?}");
         }
@@ -56,7 +56,7 @@ fn sizes_of_one_to_a_thousand() {
         v.point += Vector::new(x * width(v.point.x), 0.15 * y);
     }
     let optimiser = Optimiser::new(&b, 4, None);
-    let outcome = optimiser.optimise(&mut m, None, Effort::Full);
+    let outcome = optimiser.optimise(&mut m, None, Care::Full);
     assert!(outcome.valid && outcome.min_scaled_jacobian > 0.5, "{outcome:?}");
 }
 
@@ -66,7 +66,7 @@ fn a_thin_gap_with_coarse_elements() {
     let (b, mut m) = annulus(5, 2, 0.24, 0.1);
     let optimiser = Optimiser::new(&b, 6, None);
     assert!(!optimiser.quality(&m).valid(), "the start must be tangled");
-    let outcome = optimiser.optimise(&mut m, None, Effort::Full);
+    let outcome = optimiser.optimise(&mut m, None, Care::Full);
     assert!(outcome.valid && outcome.min_scaled_jacobian > 0.3, "{outcome:?}");
 }
 
@@ -76,7 +76,7 @@ fn only_active_quads_move() {
     let active: Vec<u32> = (0..9).collect();
     let optimiser = Optimiser::new(&b, 5, None);
     let before = m.clone();
-    let outcome = optimiser.optimise(&mut m, Some(&active), Effort::Final);
+    let outcome = optimiser.optimise(&mut m, Some(&active), Care::Final);
     assert!(outcome.valid);
     let inside = |q: u32| q < 9;
     let mut moved = 0;
@@ -116,11 +116,11 @@ fn tolerance_is_kept_and_regained() {
         let (mut even, _) = (disc(1, 1).1, ());
         let tolerance = 2.0 * own.quality(&even).error_ratio;
         let optimiser = Optimiser::new(&b, 4, Some(BoundaryTolerance { norm, order: 4, value: tolerance }));
-        assert!(optimiser.optimise(&mut even, None, Effort::Full).valid);
+        assert!(optimiser.optimise(&mut even, None, Care::Full).valid);
         assert!(optimiser.quality(&even).error_ratio <= 1.0, "{norm:?} lost");
         let mut m = m.clone();
         assert!(optimiser.quality(&m).error_ratio > 1.0);
-        assert!(optimiser.optimise(&mut m, None, Effort::Full).valid);
+        assert!(optimiser.optimise(&mut m, None, Care::Full).valid);
         let ratio = optimiser.quality(&m).error_ratio;
         assert!(ratio <= 1.0, "{norm:?} not regained: {ratio}");
     }
@@ -133,7 +133,7 @@ fn validity_is_never_lost_at_any_order() {
         let optimiser = Optimiser::new(&b, order, None);
         assert!(optimiser.quality(&m).valid(), "order {order}: start");
         let before = optimiser.quality(&m).min_scaled_jacobian;
-        let outcome = optimiser.optimise(&mut m, None, Effort::Full);
+        let outcome = optimiser.optimise(&mut m, None, Care::Full);
         assert!(outcome.valid && outcome.min_scaled_jacobian > before, "order {order}: {outcome:?}");
     }
 }
@@ -143,7 +143,7 @@ fn same_input_same_bits() {
     let run = || {
         let (b, mut m) = disc(3, 2);
         scramble(&mut m, [-0.2, -0.2], [0.2, 0.2], 5);
-        Optimiser::new(&b, 5, None).optimise(&mut m, None, Effort::Full);
+        Optimiser::new(&b, 5, None).optimise(&mut m, None, Care::Full);
         m
     };
     assert_eq!(run(), run());

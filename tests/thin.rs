@@ -7,7 +7,7 @@ use quadrel::domain::Place;
 use quadrel::mesh::{Edge, QuadMesh};
 use quadrel::numerics::Point;
 use quadrel::refine::thin;
-use quadrel::smooth::{Effort, Optimiser};
+use quadrel::smooth::{Care, Optimiser};
 
 /// 41 columns and 20 rows in a unit square, and sizes that grow from a column's width at the bottom and top.
 fn strips() -> (quadrel::domain::Boundary, QuadMesh, impl Fn(Point) -> f64) {
@@ -49,7 +49,7 @@ fn fine_columns_end_before_they_cross_the_domain() {
     // The connectivity is that of a mesh which can be made valid.
     let optimiser = Optimiser::new(&b, 3, None);
     let mut smooth = thinner;
-    optimiser.optimise(&mut smooth, None, Effort::Full);
+    optimiser.optimise(&mut smooth, None, Care::Full);
     assert!(optimiser.quality(&smooth).valid());
 }
 
@@ -73,6 +73,6 @@ fn columns_end_on_a_boundary_that_wants_fewer() {
     assert_eq!(corners(&thinner), corners(&m));
     let optimiser = Optimiser::new(&b, 3, None);
     let mut smooth = thinner;
-    optimiser.optimise(&mut smooth, None, Effort::Full);
+    optimiser.optimise(&mut smooth, None, Care::Full);
     assert!(optimiser.quality(&smooth).valid());
 }

@@ -21,6 +21,7 @@ static void options_out_of_range(void) {
     CHECK_STATUS(quadrel_options_set_field(o, 2), bad);
     CHECK_STATUS(quadrel_options_set_subdivision(o, 2147483647), bad);
     CHECK_STATUS(quadrel_options_set_symmetry(o, 2), bad);
+    CHECK_STATUS(quadrel_options_set_effort(o, 3), bad);
     CHECK_STATUS(quadrel_options_set_max_element_size(o, -1), bad);
     CHECK_STATUS(quadrel_options_set_base_mesh_size(o, HUGE_VAL), bad);
     CHECK_STATUS(quadrel_options_set_quality_floor(o, 0), bad);
@@ -49,6 +50,7 @@ static void options_out_of_range(void) {
     CHECK_STATUS(quadrel_options_set_field(NULL, 0), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_options_set_subdivision(NULL, 0), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_options_set_symmetry(NULL, 1), QUADREL_ERROR_NULL);
+    CHECK_STATUS(quadrel_options_set_effort(NULL, 1), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_options_set_max_element_size(NULL, 1), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_options_set_base_mesh_size(NULL, 1), QUADREL_ERROR_NULL);
     CHECK_STATUS(quadrel_options_set_quality_floor(NULL, 0.5), QUADREL_ERROR_NULL);

@@ -46,7 +46,7 @@ void meshes() {
   const quadrel::Domain domain = everything();
   quadrel::Options options;
   options.order(4).relative_tolerance(1e-4, quadrel::Norm::H1).tolerance(1e-3, quadrel::Norm::Max);
-  options.field(quadrel::Field::Diffused).subdivision(quadrel::Subdivision::EqualError).symmetry(true);
+  options.field(quadrel::Field::Diffused).subdivision(quadrel::Subdivision::EqualError).symmetry(true).effort(quadrel::Effort::Default);
   options.max_element_size(2).base_mesh_size(0).quality_floor(0.4).max_elements(5000);
   quadrel::Stages stages;
   quadrel::Mesh mesh = quadrel::generate(domain, options, &stages);

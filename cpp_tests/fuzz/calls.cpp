@@ -210,6 +210,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         checked(quadrel_options_set_field(options, in.byte() % 3));
         checked(quadrel_options_set_subdivision(options, in.byte() % 3));
         checked(quadrel_options_set_symmetry(options, in.byte() % 3));
+        checked(quadrel_options_set_effort(options, in.byte() % 4));
         break;
       case 15:
         checked(quadrel_options_set_relative_tolerance(options, in.byte() / 1000.0, in.byte() % 4));

@@ -4,14 +4,15 @@ use super::rounds::{note, TOO_LARGE};
 use super::watch::Watch;
 use crate::error::Result;
 use crate::mesh::QuadMesh;
+use crate::options::Effort;
 use crate::progress::Stage;
-use crate::refine::{self, Limits, Refusals, SizeLimit};
-use crate::smooth::{Effort, Optimiser};
+use crate::refine::{self, Limits, Reach, Refusals, SizeLimit};
+use crate::smooth::{Care, Optimiser};
 use crate::stages::Stages;
 
 /// Most times that a mesh is coarsened: once smoothed as a whole it may allow what it did not before ...
 const PASSES: usize = 2;
-/// ... which is not tried above so many quads: it takes as long as the first time and brings a percent.
+/// ... which is not tried for a fast mesh, nor above so many quads: it takes as long as the first time and brings a percent.
 const MOST_AGAIN: usize = 1500;
 
 /// `mesh`, which is valid, with as few elements as keep the scaled Jacobian at `floor` and the sizes within `limit`.
@@ -20,18 +21,20 @@ pub(super) fn fewer_elements(
     optimiser: &Optimiser,
     floor: f64,
     limit: Option<SizeLimit>,
+    effort: Effort,
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<QuadMesh> {
     let limits = Limits { sizes: limit, ..Limits::new(floor) };
     let mut refusals = Refusals::default();
-    for pass in 0..PASSES {
+    let (passes, reach) = if effort == Effort::Fast { (1, Reach::Near) } else { (PASSES, Reach::Far) };
+    for pass in 0..passes {
         if pass > 0 && mesh.quads.len() > MOST_AGAIN {
             break;
         }
         let progress = watch.coarsening();
         let fewer = watch.run(stages, Stage::Refine, |_| {
-            refine::coarsen(mesh.clone(), optimiser.boundary(), optimiser, limits, &mut refusals, &progress)
+            refine::coarsen(mesh.clone(), optimiser, limits, reach, &mut refusals, &progress)
         })?;
         if pass > 0 && fewer.quads.len() == mesh.quads.len() {
             break;
@@ -59,7 +62,7 @@ fn smoothed(
         before = optimiser.quality(&mesh);
     }
     let mut smoother = mesh.clone();
-    watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut smoother, None, Effort::Final)))?;
+    watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut smoother, None, Care::Final)))?;
     let after = optimiser.quality(&smoother);
     let too_large =
         |mesh: &QuadMesh| limits.sizes.is_some_and(|sizes| sizes.too_long(mesh, TOO_LARGE).contains(&true));

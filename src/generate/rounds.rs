@@ -13,7 +13,7 @@ use crate::numerics::Point;
 use crate::options::{Options, Subdivision};
 use crate::progress::Stage;
 use crate::refine::{self, SizeLimit};
-use crate::smooth::{Aim, Effort, Optimiser};
+use crate::smooth::{Aim, Care, Optimiser};
 use crate::stages::{Round, Stages};
 use std::collections::HashMap;
 
@@ -99,9 +99,8 @@ pub(super) fn refine_and_smooth(
         if round > 0 && holds(&mesh) {
             break;
         }
-        let outcome = watch.run(stages, Stage::Smooth, |_| {
-            Ok(optimiser.optimise_until(&mut mesh, None, Effort::Full, aim))
-        })?;
+        let outcome = watch
+            .run(stages, Stage::Smooth, |_| Ok(optimiser.optimise_until(&mut mesh, None, Care::Full, aim)))?;
         watch.work += outcome.work;
         note(stages, &optimiser, &mesh, "smooth");
         // Step 9: again where it does not hold yet. Divided edges keep their shape, so what is valid stays so.
@@ -142,7 +141,7 @@ pub(super) fn refine_and_smooth(
     }
     let fine = mesh.clone();
     if coarsens && watch.work <= most_work(&mesh) {
-        mesh = fewer_elements(mesh, &optimiser, floor, limit, watch, stages)?;
+        mesh = fewer_elements(mesh, &optimiser, floor, limit, options.effort, watch, stages)?;
     }
     let coarse = mesh.clone();
     let onto_breaks = |mesh: &mut QuadMesh, stages: &mut Stages, watch: &mut Watch| -> Result<()> {

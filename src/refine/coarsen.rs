@@ -12,13 +12,13 @@ use super::merge::{diagonal_growth, Merge, Refusal};
 use super::patch::Patch;
 use super::pieces::least_pieces;
 use super::refusals::{Key, Refusals};
-use super::trial::{settle, Limits, Outcome};
+use super::trial::{settle, Limits, Outcome, Reach};
 use crate::domain::{Boundary, Place};
 use crate::error::{Error, Result};
 use crate::mesh::QuadMesh;
 use crate::numerics::tolerances::ORDER_TIE;
 use crate::progress::{Progress, Stage};
-use crate::smooth::{Effort, ElementQuality, Optimiser};
+use crate::smooth::{Care, ElementQuality, Optimiser};
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashSet};
 
@@ -42,6 +42,7 @@ struct Coarsening<'a> {
     boundary: &'a Boundary,
     optimiser: &'a Optimiser<'a>,
     limits: Limits<'a>,
+    reach: Reach,
     /// Whether all elements keep the limits from the start.
     holds: bool,
     /// Least number of edges of each chain.
@@ -87,16 +88,17 @@ impl PartialOrd for Candidate {
 /// [`Error::Cancelled`]; [`Error::InvalidElement`] if the mesh cannot be made valid.
 pub fn coarsen(
     mesh: QuadMesh,
-    boundary: &Boundary,
     optimiser: &Optimiser,
     limits: Limits,
+    reach: Reach,
     refusals: &mut Refusals,
     progress: &Progress,
 ) -> Result<QuadMesh> {
+    let boundary = optimiser.boundary();
     let mut mesh = mesh;
     let mut quality = optimiser.quality(&mesh);
     if !quality.valid() {
-        optimiser.optimise(&mut mesh, None, Effort::Full);
+        optimiser.optimise(&mut mesh, None, Care::Full);
         quality = optimiser.quality(&mesh);
     }
     if !quality.valid() {
@@ -127,6 +129,7 @@ pub fn coarsen(
         boundary,
         optimiser,
         limits,
+        reach,
         holds,
         least,
         quality: quality.elements,
@@ -208,6 +211,7 @@ impl<'a> Coarsening<'a> {
             merge,
             self.limits.scaled_jacobian,
             &|rings| self.limits_at(at, rings),
+            self.reach,
             &mut work,
         );
         (outcome, work)

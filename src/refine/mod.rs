@@ -53,4 +53,4 @@ pub use strips::StripRemoval;
 pub use subdivide::subdivide;
 pub use thin::thin;
 pub use to_breaks::{OnChain, ToBreak, Undo};
-pub use trial::Limits;
+pub use trial::{Limits, Reach};

@@ -5,7 +5,7 @@ use super::live::LiveMesh;
 use super::merge::Merge;
 use super::patch::Patch;
 use super::pieces::least_pieces;
-use super::trial::{settle, Limits};
+use super::trial::{settle, Limits, Reach};
 use crate::domain::{Boundary, Place};
 use crate::error::Result;
 use crate::mesh::QuadMesh;
@@ -64,7 +64,7 @@ impl<'a> StripRemoval<'a> {
             return None;
         }
         let floor = self.limits.scaled_jacobian;
-        let settled = settle(self.optimiser, merge, floor, &|_| self.limits, &mut 0).ok()?;
+        let settled = settle(self.optimiser, merge, floor, &|_| self.limits, Reach::Far, &mut 0).ok()?;
         live.splice(&settled.patch, settled.removal);
         Some(live.compact())
     }

@@ -6,7 +6,7 @@ use super::patch::Patch;
 use super::respace::respace;
 use super::size_limit::SizeLimit;
 use crate::mesh::QuadMesh;
-use crate::smooth::{Aim, Effort, ElementQuality, Optimiser};
+use crate::smooth::{Aim, Care, ElementQuality, Optimiser};
 
 /// What a coarser mesh has to keep.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,15 +34,33 @@ impl Limits<'_> {
     }
 }
 
-/// Rings of quads around a change that are re-optimised, and the effort, in turn until one will do.
-const ATTEMPTS: [(usize, Effort); 3] = [(1, Effort::Quick), (3, Effort::Quick), (3, Effort::Full)];
+/// How far coarsening goes to make a change hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reach {
+    /// The quads next to it are optimised quickly; what does not hold then is refused.
+    Near,
+    /// If that comes near, more of them, and with care.
+    Far,
+}
+
+impl Reach {
+    fn attempts(self) -> &'static [(usize, Care)] {
+        match self {
+            Reach::Near => &ATTEMPTS[..1],
+            Reach::Far => &ATTEMPTS,
+        }
+    }
+}
+
+/// Rings of quads around a change that are re-optimised, and the care, in turn until one will do.
+const ATTEMPTS: [(usize, Care); 3] = [(1, Care::Quick), (3, Care::Quick), (3, Care::Full)];
 
 /// Multiple of the floor with which a trial ends early: the optimiser's samples are fewer than those that judge.
 const ENOUGH: f64 = 1.02;
 /// Shares of the floor below which, after the first power, a trial is given up: of 1,431 trials on 24 domains 6 that
 /// would have succeeded and 113 of the 186 that would not were below.
 const OUT_OF_REACH: [f64; 3] = [0.7, 0.0, 0.0];
-/// The same for full effort, after the first power, the second, the third: of 674 on 440 domains 3 that would have
+/// The same for full care, after the first power, the second, the third: of 674 on 440 domains 3 that would have
 /// succeeded and 410 of the 586 that would not were below.
 const OUT_OF_FULL_REACH: [f64; 3] = [0.85, 0.92, 0.95];
 /// The same where the mesh is below the floor already.
@@ -53,7 +71,7 @@ const MOST_INVERTED: usize = 6;
 /// Share of the floor that the first attempt must have come to for wider ones: of 20 trials that these made succeed
 /// one was below, of 116 that failed all the same more than half.
 const PROMISING: f64 = 0.6;
-/// Share of the floor from which full effort may still reach it: of 674 tries 8 that succeeded and 215 that did not
+/// Share of the floor from which full care may still reach it: of 674 tries 8 that succeeded and 215 that did not
 /// were below.
 const NEARLY: f64 = 0.92;
 /// The same where the mesh is below the floor already.
@@ -79,23 +97,25 @@ pub(super) fn settle<'a>(
     mut merge: Merge,
     floor: f64,
     limits_at: &dyn Fn(usize) -> Limits<'a>,
+    reach: Reach,
     work: &mut u64,
 ) -> Outcome {
     let mut seeds = merge.touched.clone();
     if let Some(error) = optimiser.boundary_error() {
         seeds.extend(respace(optimiser.boundary(), error, &mut merge).ok_or_else(Vec::new)?);
     }
-    let widest = ATTEMPTS.iter().map(|a| a.0).max().unwrap_or(0);
+    let attempts = reach.attempts();
+    let widest = attempts.iter().map(|a| a.0).max().unwrap_or(0);
     let mut patch = Patch::new(optimiser.boundary(), &merge, &seeds, widest + 1).ok_or_else(Vec::new)?;
     let mut refused = Vec::new();
-    for (rings, effort) in ATTEMPTS {
+    for (rings, care) in attempts.iter().copied() {
         let active = patch.within(rings);
         let limits = limits_at(rings + 1);
         // Where the mesh is below the floor already the local limit says little about what would be good.
         let lowered = limits.scaled_jacobian < floor;
-        let (reach, nearly) = match (effort, lowered) {
-            (Effort::Full, false) => (OUT_OF_FULL_REACH, NEARLY),
-            (Effort::Full, true) => (OUT_OF_LOWERED_REACH, NEARLY_LOWERED),
+        let (reach, nearly) = match (care, lowered) {
+            (Care::Full, false) => (OUT_OF_FULL_REACH, NEARLY),
+            (Care::Full, true) => (OUT_OF_LOWERED_REACH, NEARLY_LOWERED),
             (_, lowered) => (OUT_OF_REACH, if lowered { NEARLY_LOWERED } else { NEARLY }),
         };
         let aim = Aim {
@@ -103,7 +123,7 @@ pub(super) fn settle<'a>(
             hopeless: reach.map(|share| share * limits.scaled_jacobian),
             most_inverted: MOST_INVERTED,
         };
-        let outcome = optimiser.optimise_until(&mut patch.mesh, Some(&active), effort, Some(aim));
+        let outcome = optimiser.optimise_until(&mut patch.mesh, Some(&active), care, Some(aim));
         *work += outcome.work;
         let quality = outcome.quality;
         let others = quality.min_jacobian_ratio >= limits.jacobian_ratio

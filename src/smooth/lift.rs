@@ -1,7 +1,7 @@
 //! Improving where the mesh is poor, and nowhere else.
 
 use super::local::{grow, parts, Saved};
-use super::optimiser::{Effort, Optimiser};
+use super::optimiser::{Care, Optimiser};
 use crate::mesh::QuadMesh;
 
 /// Rings of quads around poor ones, in turn.
@@ -12,7 +12,7 @@ pub(super) fn lift(
     optimiser: &Optimiser,
     mesh: &mut QuadMesh,
     floor: f64,
-    effort: Effort,
+    care: Care,
     most_work: u64,
 ) -> u64 {
     let around = mesh.quads_around();
@@ -27,7 +27,7 @@ pub(super) fn lift(
             }
             let saved = Saved::of(mesh, &part);
             let before = optimiser.quality_of(mesh, Some(&part));
-            let outcome = optimiser.optimise(mesh, Some(&part), effort);
+            let outcome = optimiser.optimise(mesh, Some(&part), care);
             work += outcome.work;
             let after = outcome.quality;
             if !after.valid()

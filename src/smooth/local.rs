@@ -5,7 +5,7 @@
 //! around them are untangled by themselves, what lies around them fixed, with more rings in turn. Parts that do
 //! not touch are problems of their own: each takes the steps that it needs and no more.
 
-use super::optimiser::{Effort, Schedule, FLATTEN_SWEEPS, MOST_WORK};
+use super::optimiser::{Care, Schedule, FLATTEN_SWEEPS, MOST_WORK};
 use super::problem::Problem;
 use super::untangle::untangle;
 use crate::mesh::{Edge, QuadMesh, Vertex};
@@ -37,7 +37,7 @@ pub(super) trait Elements {
     /// The quads `active` as a function of what may move.
     fn problem<'a>(&'a self, mesh: &QuadMesh, active: &[u32]) -> Problem<'a>;
     /// The schedule for so many of them.
-    fn schedule(&self, effort: Effort, quads: usize) -> Schedule;
+    fn schedule(&self, care: Care, quads: usize) -> Schedule;
     /// Whether a quad is inverted.
     fn inverted(&self, mesh: &QuadMesh, quad: u32) -> bool;
 }
@@ -47,7 +47,7 @@ pub(super) trait Elements {
 pub(super) fn untangle_locally(
     elements: &impl Elements,
     mesh: &mut QuadMesh,
-    effort: Effort,
+    care: Care,
     work: &mut u64,
 ) -> usize {
     let around = mesh.quads_around();
@@ -67,7 +67,7 @@ pub(super) fn untangle_locally(
             if *work > most_work {
                 return inverted.len();
             }
-            left.extend(untangle_part(elements, mesh, &part, rings >= FLAT_FROM, effort, work));
+            left.extend(untangle_part(elements, mesh, &part, rings >= FLAT_FROM, care, work));
         }
         inverted = left;
     }
@@ -81,11 +81,11 @@ fn untangle_part(
     mesh: &mut QuadMesh,
     part: &[u32],
     flat: bool,
-    effort: Effort,
+    care: Care,
     work: &mut u64,
 ) -> Vec<u32> {
     let mut best = (among(elements, mesh, part), Saved::of(mesh, part));
-    let schedule = elements.schedule(effort, part.len());
+    let schedule = elements.schedule(care, part.len());
     let starts: &[bool] = if flat { &[false, true] } else { &[false] };
     for flat in starts {
         if best.0.is_empty() {

@@ -30,5 +30,5 @@ mod straightness;
 mod untangle;
 
 pub use laplacian::equal_spacing;
-pub use optimiser::{Aim, Effort, Optimiser, Outcome};
+pub use optimiser::{Aim, Care, Optimiser, Outcome};
 pub use quality::{ElementQuality, Quality};

@@ -16,7 +16,7 @@ use crate::numerics::tolerances::{DECISION_GRID, FINAL_GRID, WHOLE_GRID};
 
 /// How much work an optimisation may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
+pub enum Care {
     /// For a trial that may be rolled back: valid and fair.
     Quick,
     /// For a mesh that is worked on. Here, too, straight interior edges away from curved boundaries stay straight:
@@ -123,7 +123,7 @@ const STRAIGHT_STEPS: usize = 200;
 /// Fewest steps of a round.
 const LEAST_STEPS: usize = 12;
 
-impl Effort {
+impl Care {
     /// The schedule for so many quads; plain ones count as the less that they cost.
     pub(super) fn schedule_for(self, quads: usize) -> Schedule {
         let schedule = self.schedule();
@@ -146,7 +146,7 @@ impl Effort {
 
     fn schedule(self) -> Schedule {
         match self {
-            Effort::Quick => Schedule {
+            Care::Quick => Schedule {
                 powers: &[2, 8],
                 steps: 20,
                 progress: 1e-2,
@@ -158,7 +158,7 @@ impl Effort {
                 patient: false,
                 grid: DECISION_GRID,
             },
-            Effort::Full | Effort::Final => Schedule {
+            Care::Full | Care::Final => Schedule {
                 powers: &[2, 4, 8, 8],
                 steps: 60,
                 progress: 1e-4,
@@ -176,7 +176,7 @@ impl Effort {
                 untangle_steps: 50,
                 untangle_decrease: 0.1,
                 patient: false,
-                grid: if self == Effort::Final { FINAL_GRID } else { WHOLE_GRID },
+                grid: if self == Care::Final { FINAL_GRID } else { WHOLE_GRID },
             },
         }
     }
@@ -212,16 +212,16 @@ pub struct Optimiser<'a> {
 struct Curved<'a> {
     optimiser: &'a Optimiser<'a>,
     reference: &'a Reference,
-    effort: Effort,
+    care: Care,
 }
 
 impl Elements for Curved<'_> {
     fn problem<'b>(&'b self, mesh: &QuadMesh, active: &[u32]) -> Problem<'b> {
-        self.optimiser.problem(self.reference, mesh, Some(active), false, self.effort)
+        self.optimiser.problem(self.reference, mesh, Some(active), false, self.care)
     }
 
-    fn schedule(&self, effort: Effort, quads: usize) -> Schedule {
-        effort.schedule_for(quads)
+    fn schedule(&self, care: Care, quads: usize) -> Schedule {
+        care.schedule_for(quads)
     }
 
     fn inverted(&self, mesh: &QuadMesh, quad: u32) -> bool {
@@ -268,8 +268,8 @@ impl<'a> Optimiser<'a> {
     /// Optimises `mesh` in place: all of it, or the quads `active`, whose vertices and edges move unless
     /// a quad outside shares them. Once all samples are positive they stay so. If nothing valid is
     /// found the mesh is left at the last try.
-    pub fn optimise(&self, mesh: &mut QuadMesh, active: Option<&[u32]>, effort: Effort) -> Outcome {
-        self.optimise_until(mesh, active, effort, None)
+    pub fn optimise(&self, mesh: &mut QuadMesh, active: Option<&[u32]>, care: Care) -> Outcome {
+        self.optimise_until(mesh, active, care, None)
     }
 
     /// The same, ending as soon as `aim` says so: for trials, of which most are clear early.
@@ -277,7 +277,7 @@ impl<'a> Optimiser<'a> {
         &self,
         mesh: &mut QuadMesh,
         active: Option<&[u32]>,
-        effort: Effort,
+        care: Care,
         aim: Option<Aim>,
     ) -> Outcome {
         let all: Vec<u32>;
@@ -290,11 +290,11 @@ impl<'a> Optimiser<'a> {
         };
         let before = Saved::of(mesh, own);
         let mut work = 0;
-        let mut state = self.run(&self.energy, mesh, active, effort, aim, &mut work);
+        let mut state = self.run(&self.energy, mesh, active, care, aim, &mut work);
         let mut quality = self.quality_of(mesh, active);
         if state.valid && !quality.valid() {
             // Inverted between the samples: denser ones.
-            state = self.run(&self.dense, mesh, active, effort, aim, &mut work);
+            state = self.run(&self.dense, mesh, active, care, aim, &mut work);
             quality = self.quality_of(mesh, active);
         }
         if !quality.valid() {
@@ -303,7 +303,7 @@ impl<'a> Optimiser<'a> {
             before.restore(mesh);
             let held = self.quality_of(mesh, active);
             if held.valid() {
-                state = State::of(&mut self.problem(&self.energy, mesh, active, true, effort), true);
+                state = State::of(&mut self.problem(&self.energy, mesh, active, true, care), true);
                 quality = held;
             } else {
                 after.restore(mesh);
@@ -323,7 +323,7 @@ impl<'a> Optimiser<'a> {
     /// itself, as often as that helps: one poor place needs steps that all others would waste. What gets worse is
     /// undone. The work spent.
     pub fn lift(&self, mesh: &mut QuadMesh, floor: f64) -> u64 {
-        lift(self, mesh, floor, Effort::Final, MOST_WORK)
+        lift(self, mesh, floor, Care::Final, MOST_WORK)
     }
 
     /// `mesh` as a function of what may move.
@@ -333,12 +333,12 @@ impl<'a> Optimiser<'a> {
         mesh: &QuadMesh,
         active: Option<&[u32]>,
         slide: bool,
-        effort: Effort,
+        care: Care,
     ) -> Problem<'b> {
         let tolerance = self.error.as_ref();
-        let straightness = match effort {
-            Effort::Quick | Effort::Full => &self.straightness,
-            Effort::Final => &self.straightness.everywhere(),
+        let straightness = match care {
+            Care::Quick | Care::Full => &self.straightness,
+            Care::Final => &self.straightness.everywhere(),
         };
         Problem::new(self.boundary, reference, tolerance, mesh, active, slide, straightness)
     }
@@ -349,13 +349,13 @@ impl<'a> Optimiser<'a> {
         reference: &Reference,
         mesh: &mut QuadMesh,
         active: Option<&[u32]>,
-        effort: Effort,
+        care: Care,
         aim: Option<Aim>,
         work: &mut u64,
     ) -> State {
         let mut lbfgs = Lbfgs::default();
-        let mut problem = self.problem(reference, mesh, active, true, effort);
-        let schedule = effort.schedule_for(problem.cost(1) as usize);
+        let mut problem = self.problem(reference, mesh, active, true, care);
+        let schedule = care.schedule_for(problem.cost(1) as usize);
         if aim.is_some_and(|aim| {
             let most = if problem.scaled_jacobian < FAR_INVERTED { 1 } else { 2 } * aim.most_inverted;
             problem.inverted > most
@@ -365,10 +365,10 @@ impl<'a> Optimiser<'a> {
         let mut valid = problem.least_jacobian() > 0.0;
         let mut few = false;
         if !valid && active.is_none() {
-            untangle_straight(self.boundary, &self.linear, &self.straightness, mesh, effort, work);
-            let left = untangle_locally(&Curved { optimiser: self, reference, effort }, mesh, effort, work);
+            untangle_straight(self.boundary, &self.linear, &self.straightness, mesh, care, work);
+            let left = untangle_locally(&Curved { optimiser: self, reference, care }, mesh, care, work);
             few = few_of_many(left, mesh.quads.len());
-            problem = self.problem(reference, mesh, active, true, effort);
+            problem = self.problem(reference, mesh, active, true, care);
             valid = problem.least_jacobian() > 0.0;
         }
         if !valid && !few {
@@ -377,7 +377,7 @@ impl<'a> Optimiser<'a> {
                     break;
                 }
                 // Boundary vertices are only prepared where they can slide.
-                problem = self.problem(reference, mesh, active, slide || prepare == Prepare::Spread, effort);
+                problem = self.problem(reference, mesh, active, slide || prepare == Prepare::Spread, care);
                 match prepare {
                     Prepare::Nothing => {}
                     Prepare::Flatten => problem.flatten(FLATTEN_SWEEPS),
@@ -386,7 +386,7 @@ impl<'a> Optimiser<'a> {
                         problem.flatten(FLATTEN_SWEEPS);
                         if !slide {
                             problem.store(mesh);
-                            problem = self.problem(reference, mesh, active, false, effort);
+                            problem = self.problem(reference, mesh, active, false, care);
                         }
                     }
                 }
@@ -396,14 +396,14 @@ impl<'a> Optimiser<'a> {
                     break;
                 }
             }
-            problem = self.problem(reference, mesh, active, true, effort);
+            problem = self.problem(reference, mesh, active, true, care);
             valid = problem.least_jacobian() > 0.0;
         }
         if valid && active.is_none() && problem.scaled_jacobian < POOR {
             // One element that is hardly valid would stop all others: its energy outweighs theirs.
             problem.store(mesh);
-            *work += lift(self, mesh, POOR, effort, MOST_POOR_WORK);
-            problem = self.problem(reference, mesh, active, true, effort);
+            *work += lift(self, mesh, POOR, care, MOST_POOR_WORK);
+            problem = self.problem(reference, mesh, active, true, care);
         }
         if valid {
             problem.grid = schedule.grid;

@@ -174,11 +174,10 @@ impl<'a> Problem<'a> {
         self.prepare(measure);
         let mut x = std::mem::take(&mut self.unknowns);
         let scales = std::mem::take(&mut self.scales);
-        let before = self.energy(&x);
         let minimum = lbfgs.minimise(self, &mut x, &scales, reach, limits);
-        *work += self.cost(minimum.evaluations + 2);
+        *work += self.cost(minimum.evaluations + 1);
         (self.unknowns, self.scales) = (x, scales);
-        [before, minimum.value]
+        [minimum.before, minimum.value]
     }
 
     /// The work of so many evaluations, in evaluations of an element of order 5.

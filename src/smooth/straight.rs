@@ -8,7 +8,7 @@
 use super::kernel::Measure;
 use super::local::{few_of_many, untangle_locally, Elements};
 use super::minimiser::{Lbfgs, Limits};
-use super::optimiser::{Effort, Schedule};
+use super::optimiser::{Care, Schedule};
 use super::problem::Problem;
 use super::reference::Reference;
 use super::straightness::Straightness;
@@ -35,8 +35,8 @@ impl Elements for Straight<'_> {
         Problem::new(self.boundary, self.reference, None, mesh, Some(active), false, straightness)
     }
 
-    fn schedule(&self, effort: Effort, quads: usize) -> Schedule {
-        effort.schedule_for_straight(quads)
+    fn schedule(&self, care: Care, quads: usize) -> Schedule {
+        care.schedule_for_straight(quads)
     }
 
     fn inverted(&self, mesh: &QuadMesh, quad: u32) -> bool {
@@ -53,7 +53,7 @@ pub(super) fn untangle_straight(
     linear: &Reference,
     straightness: &Straightness,
     mesh: &mut QuadMesh,
-    effort: Effort,
+    care: Care,
     work: &mut u64,
 ) {
     let elements = Straight { boundary, reference: linear, straightness };
@@ -62,12 +62,12 @@ pub(super) fn untangle_straight(
     }
     let mut straight = mesh.clone();
     straight.edges.iter_mut().for_each(|e| e.bubbles.clear());
-    let left = untangle_locally(&elements, &mut straight, effort, work);
+    let left = untangle_locally(&elements, &mut straight, care, work);
     if left > 0 && few_of_many(left, mesh.quads.len()) {
         *mesh = straight;
         return;
     }
-    let schedule = effort.schedule_for_straight(mesh.quads.len());
+    let schedule = care.schedule_for_straight(mesh.quads.len());
     let mut problem = Problem::new(boundary, linear, None, &straight, None, false, straightness);
     let mut lbfgs = Lbfgs::default();
     if left > 0 && !untangle(&mut problem, &mut lbfgs, &schedule, work) {

@@ -173,6 +173,7 @@ fn options(arguments: &MeshArguments) -> Result<Options> {
     let mut options = Options {
         norm: arguments.norm.into(),
         field: arguments.field.into(),
+        effort: arguments.effort.into(),
         max_element_size: arguments.max_size,
         symmetry: !arguments.no_symmetry,
         progress: if arguments.log_stages { progress::log() } else { progress::terminal() },

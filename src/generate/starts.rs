@@ -1,0 +1,119 @@
+//! Several meshes of one domain, of which the best is kept: all of them for
+//! [`Effort::Best`](crate::options::Effort::Best), else more than one only where the first has a poor element or failed. What a
+//! mesh comes to hangs on decisions that are nearly ties; poor elements mostly on the layout, which another field lays
+//! out anew.
+
+use super::one_mesh;
+use crate::domain::Domain;
+use crate::error::{Error, Result};
+use crate::mesh::{scaled_jacobian_ceiling, HighOrderMesh};
+use crate::numerics::tolerances::ORDER_TIE;
+use crate::options::{Effort, FieldMethod, Options};
+use crate::progress::Progress;
+use crate::stages::Stages;
+
+/// Share of the domain's best possible scaled Jacobian below which an element is poor: 4 meshes of 538 have one.
+const POOR: f64 = 0.6;
+/// Elements above which a mesh is kept for its poor element: another takes as long again.
+const MOST_AGAIN: usize = 1500;
+
+/// Starts tried: the field asked for and the other one, each on the usual base mesh and on the next finer one.
+fn starts(options: &Options) -> Vec<(FieldMethod, usize)> {
+    let other = match options.field {
+        FieldMethod::Diffused => FieldMethod::Harmonic,
+        FieldMethod::Harmonic => FieldMethod::Diffused,
+    };
+    let finer: &[usize] = if options.base_triangulation.is_some() { &[0] } else { &[0, 1] };
+    finer.iter().flat_map(|finer| [options.field, other].map(|field| (field, *finer))).collect()
+}
+
+/// What meshes are compared by. Better is less, in this order; shapes that differ by rounding are equal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Rank {
+    /// Symmetries of the domain that the mesh has not.
+    missing: usize,
+    /// How far the poorest element is below what counts as poor.
+    poor: i64,
+    elements: usize,
+    shape: i64,
+}
+
+impl Rank {
+    fn of(mesh: &HighOrderMesh, stages: &Stages) -> Self {
+        let in_ties = |x: f64| (x / ORDER_TIE).round() as i64;
+        let least = stages.rounds.last().map_or(0.0, |round| round.scaled_jacobian);
+        let ceiling = stages.boundary.as_ref().map_or(1.0, scaled_jacobian_ceiling);
+        Rank {
+            missing: stages.symmetry.map_or(0, |s| s.domain.order().saturating_sub(s.mesh.order())),
+            poor: in_ties(POOR * ceiling - least).max(0),
+            elements: mesh.elements.len(),
+            shape: in_ties(-least),
+        }
+    }
+
+    /// Whether no other start is worth its time.
+    fn will_do(&self, effort: Effort) -> bool {
+        effort != Effort::Best && (self.poor == 0 || self.elements > MOST_AGAIN)
+    }
+}
+
+/// A mesh of a start, its rank and what led to it.
+struct Made {
+    mesh: HighOrderMesh,
+    rank: Rank,
+    stages: Stages,
+}
+
+/// The best mesh of the starts that the effort allows; `stages` has what led to it, and the seconds of all. Where no
+/// start gives a mesh, what the first one left.
+pub(super) fn best_of_starts(
+    domain: &Domain,
+    options: &Options,
+    stages: &mut Stages,
+) -> Result<HighOrderMesh> {
+    let starts = starts(options);
+    let count = if options.effort == Effort::Best { starts.len() as f64 } else { 1.0 };
+    let mut best: Option<Made> = None;
+    let mut failed: Option<(Error, Stages)> = None;
+    let mut seconds = [0.0; 9];
+    for (k, (field, finer)) in starts.into_iter().enumerate() {
+        let whole = options.progress.clone();
+        // Starts that nobody expected begin at the end.
+        let share_of = move |share: f64| ((k as f64 + share) / count).min(1.0);
+        let progress = Progress::new(move |stage, share| whole.report(stage, share_of(share)).is_ok());
+        let mut own = Stages::default();
+        let own_options = Options { field, progress, ..options.clone() };
+        let made = one_mesh(domain, &own_options, finer, &mut own);
+        seconds.iter_mut().zip(own.seconds).for_each(|(all, own)| *all += own);
+        match made {
+            Ok(mesh) => {
+                let rank = Rank::of(&mesh, &own);
+                if best.as_ref().is_none_or(|best| rank < best.rank) {
+                    best = Some(Made { mesh, rank, stages: own });
+                }
+            }
+            Err(error) if error.ends_a_run() => {
+                (best, failed) = (None, Some((error, own)));
+                break;
+            }
+            Err(error) => {
+                failed.get_or_insert((error, own));
+            }
+        }
+        let enough = match &best {
+            Some(best) => best.rank.will_do(options.effort),
+            // What two fields on four base meshes each did not make possible hardly is.
+            None => options.effort != Effort::Best && k > 0,
+        };
+        if enough {
+            break;
+        }
+    }
+    let (result, own) = match (best, failed) {
+        (Some(best), _) => (Ok(best.mesh), best.stages),
+        (None, Some((error, own))) => (Err(error), own),
+        (None, None) => (Err(Error::Cancelled), Stages::default()),
+    };
+    *stages = Stages { seconds, ..own };
+    result
+}
