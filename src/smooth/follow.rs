@@ -15,13 +15,13 @@ use crate::mesh::QuadMesh;
 use crate::numerics::tolerances::ON_BREAK;
 
 /// Minimisations, each with the areas and aspect ratios that the one before left.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 4;
 /// Iterations of one, fewer on meshes of more than so many quads, ...
-const STEPS: usize = 50;
+const STEPS: usize = 60;
 const FULL_STEPS: usize = 100;
 const LEAST_STEPS: usize = 15;
 /// ... and the share of the value below which five together are the last.
-const PROGRESS: f64 = 3e-4;
+const PROGRESS: f64 = 2e-4;
 /// Longest move in one step, in edge lengths.
 const REACH: f64 = 0.2;
 /// What the scaled Jacobian and the size are aimed at before their limits: the minimum is a little beyond.
