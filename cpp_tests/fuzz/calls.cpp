@@ -210,7 +210,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         checked(quadrel_options_set_field(options, in.byte() % 3));
         checked(quadrel_options_set_subdivision(options, in.byte() % 3));
         checked(quadrel_options_set_symmetry(options, in.byte() % 3));
-        checked(quadrel_options_set_effort(options, in.byte() % 4));
+        // Not the best of several meshes: it runs the same code for four times as long.
+        checked(quadrel_options_set_effort(options, in.byte() % 8 == 7 ? 3 : in.byte() % 2));
         break;
       case 15:
         checked(quadrel_options_set_relative_tolerance(options, in.byte() / 1000.0, in.byte() % 4));

@@ -15,4 +15,4 @@ CARGO_TARGET_DIR="$folder/cargo" RUSTFLAGS="$counters" cargo rustc --release --l
 clang++ -std=c++17 -O1 -g -fsanitize=fuzzer,address -I"$root/include" "$root/cpp_tests/fuzz/calls.cpp" \
     "$folder/cargo/$target/release/libquadrel.a" -lm -ldl -lpthread -o "$folder/calls"
 cd "$folder"
-./calls -max_total_time="$seconds" -timeout=60 -rss_limit_mb=4096 -max_len=400 -print_final_stats=1 corpus
+./calls -max_total_time="$seconds" -timeout=120 -rss_limit_mb=4096 -max_len=400 -print_final_stats=1 corpus
