@@ -121,7 +121,6 @@ def gmsh_rows(domain, judge, orders, sizes, curvatures, optimisers):
         for order, result in gmsh_meshes.measured(domain, recipe, orders, 0, judge, seen).items():
             rows.append(gmsh_row(domain, recipe, 0, order, result))
             again.append((recipe, order))
-            yield rows[-1]
     wanted = {}
     for row, (recipe, order) in zip(list(rows), again):
         if promising(row, rows):
@@ -129,7 +128,8 @@ def gmsh_rows(domain, judge, orders, sizes, curvatures, optimisers):
     for optimiser in optimisers:
         for recipe, few in wanted.items():
             for order, result in gmsh_meshes.measured(domain, recipe, few, optimiser, judge, set()).items():
-                yield gmsh_row(domain, recipe, optimiser, order, result)
+                rows.append(gmsh_row(domain, recipe, optimiser, order, result))
+    return rows
 
 
 def gmsh_row(domain, recipe, optimiser, order, result):
@@ -162,18 +162,15 @@ def main():
                     continue
                 begun = time.monotonic()
                 if tool == "quadrel":
-                    made = quadrel_rows(library, domain, judge, orders, sizes)
-                else:
-                    made = gmsh_rows(domain, judge, orders, sizes, curvatures, () if options.quick else OPTIMISERS)
-                rows = []
-                for row in made:
-                    rows.append(row)
-                    shown = {k: f"{v:.4e}" if isinstance(v, float) else v for k, v in row.items()}
-                    table.writerow({"domain": domain.name, "tool": tool, **shown})
-                    file.flush()
-                if tool == "quadrel":
+                    rows = list(quadrel_rows(library, domain, judge, orders, sizes))
                     enough = [r["unknowns"] for r in rows if "error" in r and total(r) <= LEAST_ERROR]
                     judge.most = min([MOST_UNKNOWNS, *(BEYOND * n for n in enough)])
+                else:
+                    rows = gmsh_rows(domain, judge, orders, sizes, curvatures, () if options.quick else OPTIMISERS)
+                for row in rows:
+                    shown = {k: f"{v:.4e}" if isinstance(v, float) else v for k, v in row.items()}
+                    table.writerow({"domain": domain.name, "tool": tool, **shown})
+                file.flush()
                 solved = sum("error" in r for r in rows)
                 print(f"{domain.name}, {tool}: {solved} of {len(rows)} meshes, {time.monotonic() - begun:.0f} s", file=sys.stderr)
 

@@ -243,10 +243,6 @@ pub const SYMMETRY_ROUNDING: f64 = 1e-14;
 /// less, and the elements' places are not much more exact.
 pub const LEAST_WAVE_ERROR: f64 = 1e-10;
 
-/// Distance along a chain up to which a vertex counts as lying on a break, where it was put to rounding: the shortest
-/// edges are a thousand times as long.
-pub const ON_BREAK: f64 = 1e-10;
-
 /// Share by which two divisions may differ in worth and still be made together: what is symmetric only to rounding,
 /// or to what smoothing leaves, must be divided alike.
 pub const EQUAL_WORTH: f64 = 1e-3;

@@ -16,7 +16,6 @@
 //! M. Staten, *An approach to combined Laplacian and optimization-based smoothing*, 1998.
 
 mod edge_error;
-mod follow;
 mod kernel;
 mod laplacian;
 mod lift;
