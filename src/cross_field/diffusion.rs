@@ -5,115 +5,95 @@ use super::thickness::thickness;
 use super::tips::Held;
 use crate::base_mesh::Triangulation;
 use crate::error::{Error, Result};
-use crate::numerics::sparse::{Cholesky, Pattern};
+use crate::numerics::sparse::{Cholesky, Entry};
 use crate::numerics::tolerances::{DIFFUSION_STEPS, DIFFUSION_TIME};
 use crate::numerics::{cross, NONE};
 use crate::options::FieldMethod;
 
 /// Stiffness and lumped mass of linear elements.
-struct Elements<'a> {
-    triangles: &'a [[u32; 3]],
-    /// Half the cotangents of each triangle's angles: minus the stiffness between the other two corners.
-    weights: Vec<[f64; 3]>,
+struct Elements {
+    /// Entries (i, j, K_ij) with i > j off the diagonal, and the diagonal; nine in a row of each triangle.
+    stiffness: Vec<Entry>,
     mass: Vec<f64>,
 }
 
-impl<'a> Elements<'a> {
-    fn new(mesh: &'a Triangulation) -> Self {
-        let mut weights = Vec::with_capacity(mesh.triangles.len());
+impl Elements {
+    fn new(mesh: &Triangulation) -> Elements {
+        let mut stiffness = Vec::with_capacity(9 * mesh.triangles.len());
         let mut mass = vec![0.0; mesh.vertices.len()];
         for corners in &mesh.triangles {
             let p = corners.map(|v| mesh.vertices[v as usize].point);
             let double = cross(p[1] - p[0], p[2] - p[0]);
-            weights.push([0, 1, 2].map(|i| {
+            for i in 0..3 {
+                let (a, b) = (corners[(i + 1) % 3] as usize, corners[(i + 2) % 3] as usize);
                 mass[corners[i] as usize] += double / 6.0;
-                // The floor keeps a triangle that is flat to rounding from swallowing the rest.
+                // Half the cotangent of the angle at corner i; the floor keeps a triangle that is
+                // flat to rounding from swallowing the rest.
                 let (d, e) = (p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]);
-                0.5 * d.dot(&e) / double.max(1e-12 * (d.norm_squared() + e.norm_squared()))
-            }));
+                let weight = 0.5 * d.dot(&e) / double.max(1e-12 * (d.norm_squared() + e.norm_squared()));
+                stiffness.extend([(a, a, weight), (b, b, weight), (a.max(b), a.min(b), -weight)]);
+            }
         }
-        Elements { triangles: &mesh.triangles, weights, mass }
-    }
-
-    /// Multiplies the stiffness of each triangle by its diffusion time.
-    fn multiply(&mut self, time: impl Fn(&[u32; 3]) -> f64) {
-        for (corners, weights) in self.triangles.iter().zip(&mut self.weights) {
-            let time = time(corners);
-            *weights = weights.map(|weight| weight * time);
-        }
-    }
-
-    /// Entries (i, j, K_ij) with i ≥ j: their sum is the stiffness.
-    fn stiffness(&self) -> impl Iterator<Item = (u32, u32, f64)> + '_ {
-        self.triangles.iter().zip(&self.weights).flat_map(|(corners, weights)| {
-            [0, 1, 2].into_iter().flat_map(move |i| {
-                let (a, b, weight) = (corners[(i + 1) % 3], corners[(i + 2) % 3], weights[i]);
-                [(a, a, weight), (b, b, weight), (a.max(b), a.min(b), -weight)]
-            })
-        })
+        Elements { stiffness, mass }
     }
 }
 
-/// Numbers of the vertices whose values are looked for.
-struct Unknowns {
-    /// Of each vertex; `NONE` if its value is known.
-    number: Vec<u32>,
-    /// Vertex of each unknown.
-    inner: Vec<u32>,
-}
-
-impl Unknowns {
-    /// Places of the systems' entries: the stiffness, then the mass.
-    fn pattern(&self, elements: &Elements) -> Result<Pattern> {
-        let pair = |(a, b, _)| {
-            let (i, j) = (self.number[a as usize], self.number[b as usize]);
-            (i != NONE && j != NONE).then_some((i.max(j), i.min(j)))
+impl Elements {
+    /// The same with the stiffness of each triangle multiplied by its diffusion time.
+    fn with_times(&self, times: &[f64]) -> Elements {
+        let scaled = |(chunk, time): (&[Entry], &f64)| {
+            chunk.iter().map(|&(i, j, k)| (i, j, k * time)).collect::<Vec<_>>()
         };
-        let diagonal = (0..self.inner.len() as u32).map(|i| (i, i));
-        let places: Vec<_> = elements.stiffness().filter_map(pair).chain(diagonal).collect();
-        Pattern::new(self.inner.len(), &places).map_err(linear)
+        Elements {
+            stiffness: self.stiffness.chunks(9).zip(times).flat_map(scaled).collect(),
+            mass: self.mass.clone(),
+        }
     }
 }
 
 /// A linear system on the inner vertices: `mass_share` M + K.
 struct System<'a> {
-    unknowns: &'a Unknowns,
-    /// Multiples of the mass, by unknown.
-    mass: Vec<f64>,
-    /// Entries of K between an unknown and a vertex whose value is known.
-    known: Vec<(u32, u32, f64)>,
+    elements: &'a Elements,
+    mass_share: f64,
+    unknown: &'a [u32],
+    /// Vertex of each unknown.
+    inner: &'a [u32],
     factors: Cholesky,
 }
 
 impl<'a> System<'a> {
-    fn new(elements: &Elements, mass_share: f64, unknowns: &'a Unknowns, pattern: &Pattern) -> Result<Self> {
-        let mass: Vec<f64> = unknowns.inner.iter().map(|&v| mass_share * elements.mass[v as usize]).collect();
-        let mut values = Vec::new();
-        let mut known = Vec::new();
-        for (a, b, k) in elements.stiffness() {
-            match [a, b].map(|v| unknowns.number[v as usize]) {
-                [NONE, NONE] => {}
-                [row, NONE] => known.push((row, b, k)),
-                [NONE, row] => known.push((row, a, k)),
-                _ => values.push(k),
+    fn new(elements: &'a Elements, mass_share: f64, unknown: &'a [u32], inner: &'a [u32]) -> Result<Self> {
+        let mut entries: Vec<Entry> = Vec::with_capacity(elements.stiffness.len() + inner.len());
+        for &(a, b, k) in &elements.stiffness {
+            let (i, j) = (unknown[a], unknown[b]);
+            if i != NONE && j != NONE {
+                entries.push((i.max(j) as usize, i.min(j) as usize, k));
             }
         }
-        values.extend(&mass);
-        Ok(System { unknowns, mass, known, factors: pattern.factor(&values).map_err(linear)? })
+        let diagonal = inner.iter().enumerate().map(|(i, &v)| (i, i, mass_share * elements.mass[v as usize]));
+        entries.extend(diagonal);
+        let factors = Cholesky::new(inner.len(), &entries).map_err(linear)?;
+        Ok(System { elements, mass_share, unknown, inner, factors })
     }
 
     /// Solves with the border's values in `u` fixed and M u as right-hand side; replaces the inner values.
     fn advance(&self, u: &mut [[f64; 2]]) -> Result<()> {
         let scaled = |x: [f64; 2], s: f64| [s * x[0], s * x[1]];
-        let inner = &self.unknowns.inner;
-        let mut right: Vec<[f64; 2]> =
-            inner.iter().zip(&self.mass).map(|(&v, &mass)| scaled(u[v as usize], mass)).collect();
-        for &(row, column, k) in &self.known {
-            let known = scaled(u[column as usize], k);
-            let r = &mut right[row as usize];
-            *r = [r[0] - known[0], r[1] - known[1]];
+        let mut right: Vec<[f64; 2]> = self
+            .inner
+            .iter()
+            .map(|&v| scaled(u[v as usize], self.mass_share * self.elements.mass[v as usize]))
+            .collect();
+        for &(a, b, k) in &self.elements.stiffness {
+            for (row, column) in [(a, b), (b, a)] {
+                if self.unknown[row] != NONE && self.unknown[column] == NONE {
+                    let known = scaled(u[column], k);
+                    let r = &mut right[self.unknown[row] as usize];
+                    *r = [r[0] - known[0], r[1] - known[1]];
+                }
+            }
         }
-        for (&v, x) in inner.iter().zip(self.factors.solve(&right).map_err(linear)?) {
+        for (&v, x) in self.inner.iter().zip(self.factors.solve(&right).map_err(linear)?) {
             u[v as usize] = x;
         }
         Ok(())
@@ -139,35 +119,36 @@ pub(super) fn solve(
     method: FieldMethod,
 ) -> Result<Vec<[f64; 2]>> {
     let mut u = vec![[0.0; 2]; mesh.vertices.len()];
-    let mut unknowns = Unknowns { number: vec![NONE; mesh.vertices.len()], inner: Vec::new() };
+    let mut unknown = vec![NONE; mesh.vertices.len()];
+    let mut inner = Vec::new();
     for v in 0..mesh.vertices.len() as u32 {
         if border.holds(v) {
             u[v as usize] = border.mean(v);
         } else if let Some(held) = held[v as usize] {
             u[v as usize] = [(4.0 * held.cross).cos(), (4.0 * held.cross).sin()];
         } else {
-            unknowns.number[v as usize] = unknowns.inner.len() as u32;
-            unknowns.inner.push(v);
+            unknown[v as usize] = inner.len() as u32;
+            inner.push(v);
         }
     }
-    let mut elements = Elements::new(mesh);
-    let pattern = unknowns.pattern(&elements)?;
-    System::new(&elements, 0.0, &unknowns, &pattern)?.advance(&mut u)?;
+    let elements = Elements::new(mesh);
+    System::new(&elements, 0.0, &unknown, &inner)?.advance(&mut u)?;
     if method == FieldMethod::Diffused {
-        renormalise(&mut u, &unknowns.inner);
+        renormalise(&mut u, &inner);
         for v in (0..mesh.vertices.len() as u32).filter(|&v| border.holds(v)) {
             u[v as usize] = border.middle(v);
         }
         // A step longer than a thin part is wide would only bring back the harmonic field there.
         let thickness = thickness(mesh, border);
-        elements.multiply(|t| {
+        let time = |t: &[u32; 3]| {
             let mean = t.iter().map(|&v| thickness[v as usize]).sum::<f64>() / 3.0;
             DIFFUSION_TIME * mean * mean
-        });
-        let step = System::new(&elements, 1.0, &unknowns, &pattern)?;
+        };
+        let diffusing = elements.with_times(&mesh.triangles.iter().map(time).collect::<Vec<_>>());
+        let step = System::new(&diffusing, 1.0, &unknown, &inner)?;
         for _ in 0..DIFFUSION_STEPS {
             step.advance(&mut u)?;
-            renormalise(&mut u, &unknowns.inner);
+            renormalise(&mut u, &inner);
         }
     }
     Ok(u)

@@ -1,20 +1,9 @@
-//! Sparse symmetric positive definite systems: one analysis, a factorisation for each set of values, many solves.
+//! Sparse symmetric positive definite systems: one factorisation, many solves.
 
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
-use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
+use faer::sparse::{SparseColMat, Triplet};
 use faer::{Mat, Side};
-
-/// Where a matrix has entries, and the order in which it is eliminated.
-#[derive(Debug, Clone)]
-pub struct Pattern {
-    size: usize,
-    /// Entries that the values are given for; those of the same place are added up.
-    entries: usize,
-    matrix: SymbolicSparseColMat<u32>,
-    order: Argsort<u32>,
-    elimination: SymbolicLlt<u32>,
-}
 
 /// The Cholesky factors of a sparse symmetric positive definite matrix.
 ///
@@ -23,49 +12,37 @@ pub struct Pattern {
 #[derive(Debug, Clone)]
 pub struct Cholesky {
     size: usize,
-    factors: Llt<u32, f64>,
+    factors: Llt<usize, f64>,
 }
 
-/// Row and column of an entry of the lower triangle.
-pub type Place = (u32, u32);
-
-impl Pattern {
-    /// For `size` × `size` matrices whose lower triangle (row ≥ column) is the sum of entries at `places`.
-    ///
-    /// `Err` says in words what is wrong: an index out of range, an entry above the diagonal, or too little memory.
-    pub fn new(size: usize, places: &[Place]) -> Result<Pattern, String> {
-        if let Some((row, column)) = places.iter().find(|(row, column)| *row as usize >= size || column > row)
-        {
-            return Err(format!("entry ({row}, {column}) is outside the lower triangle of size {size}"));
-        }
-        let pairs: Vec<_> = places.iter().map(|&(row, col)| Pair { row, col }).collect();
-        let (matrix, order) = SymbolicSparseColMat::try_new_from_indices(size, size, &pairs)
-            .map_err(|e| format!("sparse matrix: {e:?}"))?;
-        let elimination =
-            SymbolicLlt::try_new(matrix.as_ref(), Side::Lower).map_err(|e| format!("ordering: {e:?}"))?;
-        Ok(Pattern { size, entries: places.len(), matrix, order, elimination })
-    }
-
-    /// Factors the matrix with these values at the places that the pattern was made for, in their order.
-    ///
-    /// `Err` says in words what is wrong: another number of values, one that is not finite, a matrix that is not
-    /// positive definite, or too little memory.
-    pub fn factor(&self, values: &[f64]) -> Result<Cholesky, String> {
-        if values.len() != self.entries {
-            return Err(format!("{} values for {} entries", values.len(), self.entries));
-        }
-        if let Some(i) = values.iter().position(|value| !value.is_finite()) {
-            return Err(format!("entry {i} is not finite"));
-        }
-        let matrix = SparseColMat::new_from_argsort(self.matrix.clone(), &self.order, values)
-            .map_err(|e| format!("sparse matrix: {e:?}"))?;
-        let factors = Llt::try_new_with_symbolic(self.elimination.clone(), matrix.as_ref(), Side::Lower)
-            .map_err(|e| format!("Cholesky: {e:?}"))?;
-        Ok(Cholesky { size: self.size, factors })
-    }
-}
+/// An entry (row, column, value) of the lower triangle; entries of the same place are added up.
+pub type Entry = (usize, usize, f64);
 
 impl Cholesky {
+    /// Factors the `size` × `size` matrix whose lower triangle (row ≥ column) is the sum of `entries`.
+    ///
+    /// `Err` says in words what is wrong: an index out of range, an entry above the diagonal, a value
+    /// that is not finite, a matrix that is not positive definite, or too little memory.
+    pub fn new(size: usize, entries: &[Entry]) -> Result<Cholesky, String> {
+        let mut triplets = Vec::with_capacity(entries.len());
+        for &(row, column, value) in entries {
+            if row >= size || column > row {
+                return Err(format!("entry ({row}, {column}) is outside the lower triangle of size {size}"));
+            }
+            if !value.is_finite() {
+                return Err(format!("entry ({row}, {column}) is not finite"));
+            }
+            triplets.push(Triplet::new(row, column, value));
+        }
+        let matrix = SparseColMat::try_new_from_triplets(size, size, &triplets)
+            .map_err(|e| format!("sparse matrix: {e:?}"))?;
+        let symbolic =
+            SymbolicLlt::try_new(matrix.symbolic(), Side::Lower).map_err(|e| format!("ordering: {e:?}"))?;
+        let factors = Llt::try_new_with_symbolic(symbolic, matrix.as_ref(), Side::Lower)
+            .map_err(|e| format!("Cholesky: {e:?}"))?;
+        Ok(Cholesky { size, factors })
+    }
+
     /// Solves for `K` right-hand sides at once: `b[i][k]` is row i of the k-th.
     ///
     /// `Err` if the length of `b` is not the matrix's size or the solution is not finite.
@@ -90,26 +67,23 @@ impl Cholesky {
 mod tests {
     use super::*;
 
-    /// Pattern and values of the second difference, times `scale`.
-    fn second_difference(n: usize, scale: f64) -> (Vec<Place>, Vec<f64>) {
-        let (mut places, mut values) = (Vec::new(), Vec::new());
-        for i in 0..n as u32 {
+    /// −u″ on n points: tridiagonal (2, −1).
+    fn second_difference(n: usize) -> Vec<Entry> {
+        let mut entries = Vec::new();
+        for i in 0..n {
             // The diagonal in two halves: repeated entries have to add up.
-            places.extend([(i, i), (i, i)]);
-            values.extend([scale, scale]);
+            entries.extend([(i, i, 1.0), (i, i, 1.0)]);
             if i > 0 {
-                places.push((i, i - 1));
-                values.push(-scale);
+                entries.push((i, i - 1, -1.0));
             }
         }
-        (places, values)
+        entries
     }
 
     #[test]
     fn solves_two_right_hand_sides() {
         let n = 500;
-        let (places, values) = second_difference(n, 1.0);
-        let pattern = Pattern::new(n, &places).unwrap();
+        let a = Cholesky::new(n, &second_difference(n)).unwrap();
         let exact: Vec<[f64; 2]> = (0..n).map(|i| [(i as f64 * 0.1).sin(), i as f64]).collect();
         let at = |i: isize, k: usize| match usize::try_from(i).ok().filter(|&i| i < n) {
             Some(i) => exact[i][k],
@@ -118,28 +92,19 @@ mod tests {
         let b: Vec<[f64; 2]> = (0..n as isize)
             .map(|i| std::array::from_fn(|k| 2.0 * at(i, k) - at(i - 1, k) - at(i + 1, k)))
             .collect();
-        let x = pattern.factor(&values).unwrap().solve(&b).unwrap();
+        let x = a.solve(&b).unwrap();
         for (x, e) in x.iter().zip(&exact) {
             assert!((x[0] - e[0]).abs() < 1e-8 && (x[1] - e[1]).abs() < 1e-6, "{x:?} {e:?}");
         }
-        assert_eq!(x, Pattern::new(n, &places).unwrap().factor(&values).unwrap().solve(&b).unwrap());
-        // The same pattern with other values.
-        let halves = pattern.factor(&second_difference(n, 2.0).1).unwrap().solve(&b).unwrap();
-        for (x, e) in halves.iter().zip(&exact) {
-            assert!((2.0 * x[0] - e[0]).abs() < 1e-8, "{x:?} {e:?}");
-        }
+        assert_eq!(x, Cholesky::new(n, &second_difference(n)).unwrap().solve(&b).unwrap());
     }
 
     #[test]
     fn refuses_what_it_cannot_factor() {
-        assert!(Pattern::new(2, &[(0, 0), (1, 1)]).unwrap().factor(&[1.0, -1.0]).is_err());
-        assert!(Pattern::new(2, &[(0, 0), (0, 1)]).is_err());
-        assert!(Pattern::new(1, &[(1, 0)]).is_err());
-        let one = Pattern::new(1, &[(0, 0)]).unwrap();
-        assert!(one.factor(&[f64::NAN]).is_err());
-        assert!(one.factor(&[1.0, 1.0]).is_err());
-        assert!(one.factor(&[1.0]).unwrap().solve(&[[1.0], [2.0]]).is_err());
-        let none = Pattern::new(0, &[]).unwrap().factor(&[]).unwrap();
-        assert_eq!(none.solve::<1>(&[]).unwrap(), Vec::<[f64; 1]>::new());
+        assert!(Cholesky::new(2, &[(0, 0, 1.0), (1, 1, -1.0)]).is_err());
+        assert!(Cholesky::new(2, &[(0, 0, 1.0), (0, 1, 1.0)]).is_err());
+        assert!(Cholesky::new(1, &[(0, 0, f64::NAN)]).is_err());
+        assert!(Cholesky::new(1, &[(0, 0, 1.0)]).unwrap().solve(&[[1.0], [2.0]]).is_err());
+        assert_eq!(Cholesky::new(0, &[]).unwrap().solve::<1>(&[]).unwrap(), Vec::<[f64; 1]>::new());
     }
 }
