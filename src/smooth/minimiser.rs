@@ -38,9 +38,6 @@ pub(super) struct Limits {
 /// What came out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Minimum {
-    /// The value at the start, ...
-    pub before: f64,
-    /// ... and at the end.
     pub value: f64,
     pub evaluations: usize,
 }
@@ -125,7 +122,6 @@ impl Lbfgs {
             value = objective.evaluate(x, &mut self.gradient);
             evaluations += 1;
         }
-        let before = value;
         let (mut kept, mut head) = (0, 0);
         let mut history = [f64::INFINITY; 5];
         for step in 0..limits.steps {
@@ -181,12 +177,12 @@ impl Lbfgs {
             }
             std::mem::swap(&mut self.gradient, &mut self.next_gradient);
             value = trial;
-            let earlier = std::mem::replace(&mut history[step % 5], value);
-            if earlier - value < limits.progress * value.abs() {
+            let before = std::mem::replace(&mut history[step % 5], value);
+            if before - value < limits.progress * value.abs() {
                 break;
             }
         }
-        Minimum { before, value, evaluations }
+        Minimum { value, evaluations }
     }
 
     /// Two-loop recursion: the descent direction for the present gradient.
