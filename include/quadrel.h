@@ -325,11 +325,11 @@ typedef int32_t quadrel_effort;
 #define QUADREL_SYMMETRY_IGNORED 0
 /** the mesh has them, to rounding, if such a mesh is found that is not clearly worse */
 #define QUADREL_SYMMETRY_KEPT 1
-/** About two thirds of the time, for about 4 % more elements. */
+/** About two thirds of the time, for about 5 % more elements. */
 #define QUADREL_EFFORT_FAST 0
 /** The default. */
 #define QUADREL_EFFORT_DEFAULT 1
-/** The best of four meshes: about four times the time, for about 8 % fewer elements. */
+/** The best of four meshes: about four times the time, for about 6 % fewer elements. */
 #define QUADREL_EFFORT_BEST 2
 
 /** Options with their defaults. */

@@ -44,12 +44,12 @@ pub enum FieldMethod {
 /// How much work fewer elements are worth. Validity, tolerance, quality floor and sizes hold with any.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Effort {
-    /// About two thirds of the time of [`Effort::Default`], for about 4 % more elements.
+    /// About two thirds of the time of [`Effort::Default`], for about 5 % more elements.
     Fast,
     /// What is removed is smoothed around there as far as it takes.
     #[default]
     Default,
-    /// The best of four meshes, from both cross fields and two base meshes: about four times the time, for about 8 %
+    /// The best of four meshes, from both cross fields and two base meshes: about four times the time, for about 6 %
     /// fewer elements. [`Options::field`] says with which it begins.
     Best,
 }

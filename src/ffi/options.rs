@@ -50,11 +50,11 @@ pub const QUADREL_SYMMETRY_KEPT: quadrel_symmetry = 1;
 /// How much work fewer elements are worth: a QUADREL_EFFORT number.
 pub type quadrel_effort = i32;
 
-/// About two thirds of the time, for about 4 % more elements.
+/// About two thirds of the time, for about 5 % more elements.
 pub const QUADREL_EFFORT_FAST: quadrel_effort = 0;
 /// The default.
 pub const QUADREL_EFFORT_DEFAULT: quadrel_effort = 1;
-/// The best of four meshes: about four times the time, for about 8 % fewer elements.
+/// The best of four meshes: about four times the time, for about 6 % fewer elements.
 pub const QUADREL_EFFORT_BEST: quadrel_effort = 2;
 
 /// Options with their defaults.

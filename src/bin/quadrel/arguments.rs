@@ -58,7 +58,7 @@ pub struct MeshArguments {
     /// Mesh a symmetric domain without regard to its symmetries
     #[arg(long)]
     pub no_symmetry: bool,
-    /// How much work fewer elements are worth: fast takes about two thirds of the time for about 4 % more of them, best takes
+    /// How much work fewer elements are worth: fast takes about two thirds of the time for about 5 % more of them, best takes
     /// the best of four meshes
     #[arg(long, value_enum, default_value_t = EffortName::Default)]
     pub effort: EffortName,
