@@ -355,8 +355,12 @@ quadrel_status quadrel_options_set_relative_tolerance(quadrel_options *options,
                                                       double tolerance,
                                                       quadrel_norm norm);
 
-/** Which cross field, a QUADREL_FIELD number; default QUADREL_FIELD_DIFFUSED. */
-quadrel_status quadrel_options_set_field(quadrel_options *options, quadrel_field field);
+/**
+ * Which cross field, a QUADREL_FIELD number; default QUADREL_FIELD_DIFFUSED. Where the mesh that comes of it has an
+ * element below 0.6 of the best possible scaled Jacobian, or there is none, the other one is tried, too.
+ */
+quadrel_status quadrel_options_set_field(quadrel_options *options,
+                                         quadrel_field field);
 
 /** How boundary edges are divided, a QUADREL_SUBDIVISION number; default QUADREL_SUBDIVISION_EQUAL_ERROR. */
 quadrel_status quadrel_options_set_subdivision(quadrel_options *options, quadrel_subdivision subdivision);

@@ -54,7 +54,7 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
     starts::best_of_starts(domain, options, stages)
 }
 
-/// One mesh; the base mesh begins `finer` times finer than usual.
+/// One mesh; its base mesh is refined `finer` times before anything is tried.
 fn one_mesh(domain: &Domain, options: &Options, finer: usize, stages: &mut Stages) -> Result<HighOrderMesh> {
     *stages = Stages::default();
     let mut watch = Watch::new(options);

@@ -145,7 +145,8 @@ pub unsafe extern "C" fn quadrel_options_set_relative_tolerance(
     }
 }
 
-/// Which cross field, a QUADREL_FIELD number; default QUADREL_FIELD_DIFFUSED.
+/// Which cross field, a QUADREL_FIELD number; default QUADREL_FIELD_DIFFUSED. Where the mesh that comes of it has an
+/// element below 0.6 of the best possible scaled Jacobian, or there is none, the other one is tried, too.
 #[no_mangle]
 pub unsafe extern "C" fn quadrel_options_set_field(
     options: *mut quadrel_options,

@@ -1,7 +1,7 @@
 //! Several meshes of one domain, of which the best is kept: all of them for
-//! [`Effort::Best`](crate::options::Effort::Best), else more than one only where the first has a poor element or failed. What a
-//! mesh comes to hangs on decisions that are nearly ties; poor elements mostly on the layout, which another field lays
-//! out anew.
+//! [`Effort::Best`](crate::options::Effort::Best), else more than one only where the first has a poor element or
+//! failed. What a mesh comes to hangs on decisions that are nearly ties; poor elements mostly on the layout, which
+//! another field lays out anew.
 
 use super::one_mesh;
 use crate::domain::Domain;

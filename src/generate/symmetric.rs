@@ -8,7 +8,7 @@ use super::smooth_edges::smooth_edges;
 use super::watch::Watch;
 use super::TOLERANCE_AIM;
 use crate::domain::{Boundary, Domain};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::mesh::{
     scaled_jacobian_ceiling, BoundaryTolerance, DomainCurve, ExactCurve, HighOrderMesh, QuadMesh,
 };
@@ -105,7 +105,7 @@ pub(super) fn proven(
     });
     match proven {
         Ok(mesh) => Ok(Some(mesh)),
-        Err(error @ (Error::Cancelled | Error::Callback { .. })) => Err(error),
+        Err(error) if error.ends_a_run() => Err(error),
         Err(_) => {
             stages.quad_mesh = before;
             stages.rounds.truncate(rounds);
@@ -119,7 +119,7 @@ pub(super) fn proven(
 /// has not all.
 ///
 /// # Errors
-/// Only what ends a run: [`Error::Cancelled`], and what a callback reports.
+/// Only what ends a run: [`Cancelled`](crate::error::Error::Cancelled), and what a callback reports.
 pub(super) fn symmetrise(
     setting: Setting,
     boundary: &Boundary,
@@ -165,9 +165,7 @@ pub(super) fn symmetrise(
         }
         let part = match part_mesh(setting, &sector, group, floor(setting.options, boundary), watch, stages) {
             Ok(part) => part,
-            Err(error @ (Error::Cancelled | Error::Callback { .. } | Error::SizeFunction { .. })) => {
-                return Err(error)
-            }
+            Err(error) if error.ends_a_run() => return Err(error),
             // The direct mesh stays.
             Err(_) => continue,
         };

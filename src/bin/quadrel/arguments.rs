@@ -58,11 +58,12 @@ pub struct MeshArguments {
     /// Mesh a symmetric domain without regard to its symmetries
     #[arg(long)]
     pub no_symmetry: bool,
-    /// How much work fewer elements are worth: fast takes about two thirds of the time for about 5 % more of them, best takes
-    /// the best of four meshes
+    /// How much work fewer elements are worth: fast takes about two thirds of the time for about 5 % more of them,
+    /// best takes the best of four meshes
     #[arg(long, value_enum, default_value_t = EffortName::Default)]
     pub effort: EffortName,
-    /// Cross field: diffused keeps singularities apart, harmonic is the paper's
+    /// Cross field: diffused keeps singularities apart, harmonic is the paper's; where one leads to a poor mesh or none
+    /// the other is tried, too
     #[arg(long, value_enum, default_value_t = FieldName::Diffused)]
     pub field: FieldName,
     /// Number of threads; the mesh never depends on it (this version uses one)
