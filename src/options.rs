@@ -113,8 +113,8 @@ pub struct Options {
     /// The caller's own base mesh; `None`: one is made.
     pub base_triangulation: Option<Arc<BaseTriangulation>>,
     /// Share, in (0, 1), of the domain's best possible scaled Jacobian ([`crate::mesh::scaled_jacobian_ceiling`])
-    /// that coarsening does not take elements below; where the mesh is below it already, coarsening does not
-    /// make it worse.
+    /// that coarsening, and moving what was divided for a size, do not take elements below; where the mesh is below
+    /// it already, they do not make it worse.
     pub quality_floor: f64,
     /// Whether a domain with mirrors or rotations gets a mesh that has them, to rounding, if one is found that is not
     /// clearly worse. Not with [`element_size`](Self::element_size) or

@@ -89,3 +89,13 @@ fn where_the_boundary_is_smooth_the_size_decides() {
     assert!(large / small > 45.0, "{large:e} {small:e}");
     assert!(few < 150 && many <= 4 * few + 40, "{few} {many}");
 }
+
+#[test]
+fn few_elements_follow_a_wave_as_long_as_the_domain() {
+    // The same 20 elements, where they were before they were moved, leave 1e-6.
+    let (mesh, diagonal) = divided("mech/turek-hron-fsi.control", 6, 1e-4, 4.3);
+    let wave = |p: Point| (TAU / diagonal * p.x).sin() * (TAU / diagonal * p.y).cosh();
+    let left = error(&mesh, 6, &wave);
+    assert!(left < 2e-7, "{left:e}");
+    assert!(mesh.elements.len() <= 20, "{}", mesh.elements.len());
+}

@@ -121,6 +121,7 @@ def gmsh_rows(domain, judge, orders, sizes, curvatures, optimisers):
         for order, result in gmsh_meshes.measured(domain, recipe, orders, 0, judge, seen).items():
             rows.append(gmsh_row(domain, recipe, 0, order, result))
             again.append((recipe, order))
+            yield rows[-1]
     wanted = {}
     for row, (recipe, order) in zip(list(rows), again):
         if promising(row, rows):
@@ -128,8 +129,7 @@ def gmsh_rows(domain, judge, orders, sizes, curvatures, optimisers):
     for optimiser in optimisers:
         for recipe, few in wanted.items():
             for order, result in gmsh_meshes.measured(domain, recipe, few, optimiser, judge, set()).items():
-                rows.append(gmsh_row(domain, recipe, optimiser, order, result))
-    return rows
+                yield gmsh_row(domain, recipe, optimiser, order, result)
 
 
 def gmsh_row(domain, recipe, optimiser, order, result):
@@ -162,15 +162,18 @@ def main():
                     continue
                 begun = time.monotonic()
                 if tool == "quadrel":
-                    rows = list(quadrel_rows(library, domain, judge, orders, sizes))
-                    enough = [r["unknowns"] for r in rows if "error" in r and total(r) <= LEAST_ERROR]
-                    judge.most = min([MOST_UNKNOWNS, *(BEYOND * n for n in enough)])
+                    made = quadrel_rows(library, domain, judge, orders, sizes)
                 else:
-                    rows = gmsh_rows(domain, judge, orders, sizes, curvatures, () if options.quick else OPTIMISERS)
-                for row in rows:
+                    made = gmsh_rows(domain, judge, orders, sizes, curvatures, () if options.quick else OPTIMISERS)
+                rows = []
+                for row in made:
+                    rows.append(row)
                     shown = {k: f"{v:.4e}" if isinstance(v, float) else v for k, v in row.items()}
                     table.writerow({"domain": domain.name, "tool": tool, **shown})
-                file.flush()
+                    file.flush()
+                if tool == "quadrel":
+                    enough = [r["unknowns"] for r in rows if "error" in r and total(r) <= LEAST_ERROR]
+                    judge.most = min([MOST_UNKNOWNS, *(BEYOND * n for n in enough)])
                 solved = sum("error" in r for r in rows)
                 print(f"{domain.name}, {tool}: {solved} of {len(rows)} meshes, {time.monotonic() - begun:.0f} s", file=sys.stderr)
 

@@ -22,7 +22,7 @@ LINEAR_QUAD = 3
 # Gmsh's high-order optimisers: none, elastic analogy and then optimisation, fast curving.
 OPTIMISERS = {0: (), 2: ("HighOrderElastic", "HighOrder"), 4: ("HighOrderFastCurving",)}
 # Seconds that one mesh may take, of all orders asked for.
-PATIENCE = 5
+PATIENCE = 10
 
 
 # Marks the message that carries a mesh's digest.

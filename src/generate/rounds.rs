@@ -8,7 +8,7 @@ use crate::domain::{Boundary, BoundaryPoint, Place};
 use crate::error::{Error, Result};
 use crate::layout::QuadLayout;
 use crate::mesh::{scaled_jacobian_ceiling, BoundaryError, BoundaryTolerance, QuadMesh, Vertex};
-use crate::numerics::tolerances::{OFF_POWERS, START_GRID};
+use crate::numerics::tolerances::{OFF_POWERS, ORDER_TIE, START_GRID};
 use crate::numerics::Point;
 use crate::options::{Options, Subdivision};
 use crate::progress::Stage;
@@ -36,6 +36,8 @@ const FEW: f64 = 1e-3;
 /// Sizes in those that the caller's function allows above which elements are divided once more after smoothing,
 /// and after coarsening.
 pub(super) const TOO_LARGE: f64 = 1.1;
+/// Most quads of a mesh whose elements are moved to follow waves: of more each has little to gain.
+pub(super) const MOST_FOLLOWING: usize = 400;
 /// Most elements, as a multiple of the first round's, before another layout is tried.
 const MOST_GROWTH: usize = 3;
 
@@ -172,6 +174,21 @@ pub(super) fn refine_and_smooth(
             }
             note(stages, &optimiser, &mesh, "divide");
             onto_breaks(&mut mesh, stages, watch)?;
+            if std::env::var("V1").is_ok() {
+                if let Some(size) = options.max_element_size.filter(|_| even).map(|size| size / boundary.frame.scale).filter(|_| mesh.quads.len() <= MOST_FOLLOWING) {
+                    let follow = |_: &mut Stages| Ok(follow_waves(&mut mesh, size, &optimiser, floor));
+                    if watch.run(stages, Stage::Smooth, follow)? {
+                        note(stages, &optimiser, &mesh, "follow");
+                    }
+                }
+            }
+        }
+        if std::env::var("V1").is_ok() || std::env::var("V2").is_ok() {} else
+        if let Some(size) = size.filter(|_| mesh.quads.len() <= MOST_FOLLOWING) {
+            let follow = |_: &mut Stages| Ok(follow_waves(&mut mesh, size, &optimiser, floor));
+            if watch.run(stages, Stage::Smooth, follow)? {
+                note(stages, &optimiser, &mesh, "follow");
+            }
         }
     }
     if mesh.quads.len() > options.max_elements {
@@ -180,6 +197,15 @@ pub(super) fn refine_and_smooth(
         return Err(Error::Layout { reason, at: None });
     }
     Ok(Refined { mesh, fine, coarse })
+}
+
+/// Moves `mesh`, divided for `size`, so that its elements follow waves of 2πh, or of the diagonal if that is less: longer
+/// ones the domain does not see. Whether anything moved.
+pub(super) fn follow_waves(mesh: &mut QuadMesh, size: f64, optimiser: &Optimiser, floor: f64) -> bool {
+    let allowed = |_: Point| size;
+    let limit = SizeLimit::new(&allowed);
+    let small = |mesh: &QuadMesh| !limit.too_long(mesh, 1.0 + 2.0 * ORDER_TIE).contains(&true);
+    optimiser.follow(mesh, (1.0 / size).max(std::f64::consts::TAU), floor, size, &small)
 }
 
 /// Work after which no further round begins on `mesh`, nor its coarsening.

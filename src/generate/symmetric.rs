@@ -3,7 +3,7 @@
 mod bar;
 mod part;
 
-use super::rounds::{note, Refined};
+use super::rounds::{follow_waves, note, Refined, MOST_FOLLOWING};
 use super::smooth_edges::smooth_edges;
 use super::watch::Watch;
 use super::TOLERANCE_AIM;
@@ -251,6 +251,20 @@ fn divided(
     let mut divided = once(found, None)?;
     for _ in 0..2 {
         divided = even.and_then(|_| once(&divided, even)).unwrap_or(divided);
+    }
+    if even.is_some() && divided.mesh.quads.len() <= MOST_FOLLOWING {
+        let mut mesh = divided.mesh.clone();
+        let moved = follow_waves(&mut mesh, size, optimiser, floor(options, boundary));
+        let better = moved.then(|| averaged(&mesh, boundary, group)).flatten();
+        let kept = |better: &Symmetrised| {
+            let quality = optimiser.quality(&better.mesh);
+            better.elements.len() >= divided.elements.len()
+                && quality.valid()
+                && quality.min_scaled_jacobian >= floor(options, boundary).min(bar.scaled_jacobian)
+                && quality.error_ratio <= bar.error_ratio
+                && !limit.too_long(&better.mesh, 1.0 + 2.0 * ORDER_TIE).contains(&true)
+        };
+        divided = better.filter(kept).unwrap_or(divided);
     }
     Some(divided)
 }

@@ -7,11 +7,9 @@
 //! Graf's theorem the sum of the products of J_n(kr) cos nφ and J_n(kr) sin nφ at x and y, polar coordinates round any
 //! point. So the mean over the directions is a sum over n, the same however the line is turned or moved.
 
+use crate::numerics::tolerances::SOLUTION_DEGREES;
 use crate::numerics::{legendre, GaussLegendre, Point, Vector};
 
-/// Degrees of a solution, as shares of the elements' order: the order itself, and lower ones, which see modes of the
-/// elements' maps that their own degree does not contain.
-const DEGREES: [f64; 3] = [1.0, 0.7, 0.4];
 /// Quadrature points beyond the order's own: a wave along a line is no polynomial.
 const MORE_POINTS: usize = 4;
 /// Circular waves beyond the order: higher ones are below rounding on lines shorter than half a wave.
@@ -20,7 +18,7 @@ const MORE_WAVES: usize = 4;
 const TERMS: usize = 8;
 
 /// Mean squares for each of the degrees.
-pub(super) type Errors = [f64; DEGREES.len()];
+pub(super) type Errors = [f64; SOLUTION_DEGREES.len()];
 
 /// Tables for elements of one order and waves of one length.
 #[derive(Debug)]
@@ -30,7 +28,7 @@ pub(super) struct Waves {
     wave_number: f64,
     /// Orthonormal Legendre polynomials at the nodes, times the weights' square roots: `[degree][node]`.
     polynomials: Vec<Vec<f64>>,
-    degrees: [usize; DEGREES.len()],
+    degrees: [usize; SOLUTION_DEGREES.len()],
 }
 
 impl Waves {
@@ -42,7 +40,7 @@ impl Waves {
         };
         Waves {
             polynomials: (0..=order).map(polynomial).collect(),
-            degrees: DEGREES.map(|share| ((share * order as f64).round() as usize).max(1)),
+            degrees: SOLUTION_DEGREES.map(|share| ((share * order as f64).round() as usize).max(1)),
             wave_number,
             rule,
         }

@@ -16,6 +16,7 @@
 //! M. Staten, *An approach to combined Laplacian and optimization-based smoothing*, 1998.
 
 mod edge_error;
+mod follow;
 mod kernel;
 mod laplacian;
 mod lift;

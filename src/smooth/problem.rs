@@ -8,15 +8,19 @@ mod plain;
 mod restart;
 mod sampling;
 mod unknowns;
+mod waves;
 
 use super::kernel::{self, Lanes, Measure, Sides, Target};
 use super::minimiser::{Lbfgs, Limits, Objective, Scales};
-use super::reference::{Reference, MAX_SAMPLES};
+use super::reference::{Reference, MAX_SAMPLES, MOST_LANES};
 use crate::domain::{Boundary, BoundaryPoint, Place, Span};
 use crate::mesh::{BoundaryError, QuadMesh};
 use crate::numerics::{Point, Vector, NONE};
 use pulp::NullaryFnOnce;
 use sampling::arc_lengths;
+use waves::WaveTerm;
+
+pub(super) use waves::{Demands, MORE_SAMPLES};
 
 /// Weight of an even Jacobian against angles in the shape energy; uneven elements get more.
 const EVENNESS: f64 = 0.1;
@@ -117,6 +121,8 @@ pub(super) struct Problem<'a> {
     pub error_ratio: f64,
     /// Least d/A of the last evaluation.
     pub least: f64,
+    /// A term for the elements' errors beside their shape.
+    waves: Option<WaveTerm>,
 }
 
 /// What is done with the sampled elements, compiled for the widest registers that the processor has. The order
@@ -156,7 +162,8 @@ impl NullaryFnOnce for Wide<'_, '_, '_> {
         match self.problem.reference.lanes {
             4 => self.run::<4>(),
             8 => self.run::<8>(),
-            _ => self.run::<MAX_SAMPLES>(),
+            MAX_SAMPLES => self.run::<MAX_SAMPLES>(),
+            _ => self.run::<MOST_LANES>(),
         }
     }
 }
@@ -306,7 +313,12 @@ impl<'a> Problem<'a> {
         if !energy.is_finite() {
             return f64::INFINITY;
         }
+        let energy = energy + self.evaluate_waves::<L>();
+        if !energy.is_finite() {
+            return f64::INFINITY;
+        }
         let total = energy + self.gather::<L>(x, gradient);
+        self.keep_pinned(gradient);
         if total.is_nan() {
             f64::INFINITY
         } else {
@@ -393,6 +405,18 @@ mod tests {
             assert!(problem.elements.iter().all(|e| e.plain == tolerance.is_none()));
             check_gradients(problem);
         }
+    }
+
+    #[test]
+    fn gradients_of_waves_agree_with_differences() {
+        let (boundary, mesh) = example();
+        let reference = Reference::for_waves(5, 5 + MORE_SAMPLES);
+        let straightness = Straightness::new(&boundary);
+        let mut problem =
+            Problem::new(&boundary, &reference, None, &mesh, None, true, &straightness.everywhere());
+        // Angles and sizes beyond them, too.
+        problem.follow(Demands { wave_number: 9.0, scaled_jacobian: 0.7, size: 0.3 }, Vec::new());
+        check_gradients(problem);
     }
 
     fn check_gradients(mut problem: Problem) {

@@ -9,6 +9,9 @@ pub(super) const MAX_SAMPLES: usize = 12;
 /// The same for the usual energy.
 const MOST_USUAL_SAMPLES: usize = 8;
 
+/// The same where errors of waves are measured.
+pub(super) const MOST_LANES: usize = 16;
+
 /// Most bubbles of an interior edge, which is a cubic then: four gained nothing measurable on 71 domains.
 pub(super) const MAX_BUBBLES: usize = 2;
 
@@ -21,6 +24,8 @@ const MORE_ERROR_POINTS: usize = 5;
 #[derive(Debug, Clone)]
 pub(super) struct Reference {
     pub order: usize,
+    /// Elements with straight sides are sampled like all others.
+    pub samples_all: bool,
     /// Sample parameters, ascending with both ends, exactly symmetric.
     pub samples: Vec<f64>,
     /// Length L of the tables' columns: samples rounded up to whole vectors; the last sample is repeated.
@@ -90,6 +95,7 @@ impl Reference {
         };
         Reference {
             order,
+            samples_all: false,
             lanes,
             bubbles,
             bubble: table.iter().map(|b| b.0).collect(),
@@ -111,7 +117,12 @@ impl Reference {
         Reference::new(order, (order + 2).clamp(3, MOST_USUAL_SAMPLES))
     }
 
-    /// The same with more samples, for elements that are inverted between the usual ones.
+    /// Tables for errors of waves, which see elements with straight sides, too.
+    pub fn for_waves(order: usize, samples: usize) -> Self {
+        Reference { samples_all: true, ..Self::new(order, samples) }
+    }
+
+    /// The same as the first with more samples, for elements that are inverted between the usual ones.
     pub fn for_dense_energy(order: usize) -> Self {
         Reference::new(order, (2 * order + 1).clamp(4, MAX_SAMPLES))
     }

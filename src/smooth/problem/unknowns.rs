@@ -93,6 +93,7 @@ impl<'a> Problem<'a> {
             mean_scaled_jacobian: 0.0,
             error_ratio: 0.0,
             least: 0.0,
+            waves: None,
         };
         problem.place_unknowns(mesh, &pinned, slide);
         for q in active {
@@ -106,7 +107,7 @@ impl<'a> Problem<'a> {
             let flips = [0, 1, 2, 3].map(|i| mesh.edges[global[i] as usize].vertices[0] != starts[i]);
             let target = Target { ratio: 1.0, area: 1.0, evenness: EVENNESS };
             let corners = quad.map(|v| vertex_of[v as usize]);
-            let plain = edges.iter().all(|e| problem.edges[*e as usize].straight);
+            let plain = !reference.samples_all && edges.iter().all(|e| problem.edges[*e as usize].straight);
             if !plain {
                 edges.iter().for_each(|e| problem.edges[*e as usize].sampled = true);
             }
