@@ -37,8 +37,7 @@ fn coarsened(b: &Boundary, m: QuadMesh, order: usize, value: f64, floor: f64) ->
     let before = optimiser.quality(&m);
     assert!(before.valid() && before.error_ratio <= 1.0, "the start must hold: {before:?}");
     let limits = Limits::new(floor);
-    let coarse =
-        coarsen(m.clone(), &optimiser, limits, Reach::Far, &Progress::default()).expect("a coarser mesh");
+    let coarse = coarsen(m.clone(), &optimiser, limits, Reach::Far, &Progress::default()).expect("a coarser mesh");
     let after = optimiser.quality(&coarse);
     assert!(after.valid() && after.error_ratio <= 1.0);
     assert!(after.min_scaled_jacobian >= floor.min(before.min_scaled_jacobian));
@@ -116,8 +115,5 @@ fn coarsening_is_deterministic_and_can_be_cancelled() {
     let run = || coarsen(m.clone(), &optimiser, Limits::new(0.4), Reach::Far, &Progress::default());
     assert_eq!(run(), run());
     let stop = Progress::new(|_, _| false);
-    assert_eq!(
-        coarsen(m.clone(), &optimiser, Limits::new(0.4), Reach::Far, &stop),
-        Err(quadrel::Error::Cancelled)
-    );
+    assert_eq!(coarsen(m.clone(), &optimiser, Limits::new(0.4), Reach::Far, &stop), Err(quadrel::Error::Cancelled));
 }

@@ -72,8 +72,10 @@ fn the_knots_of_a_spline_do_not_hold_convergence_up() {
         let k = 8.0 * TAU / diagonal;
         error(&mesh, 5, &|p| (k * p.x + 0.3).sin() * (k * p.y + 0.5).cos())
     });
-    // The size alone gives 5e-4 and 7e-5.
-    assert!(sizes[0] < 2.5e-4 && sizes[1] < 1.5e-5, "{sizes:?}");
+    // The size alone gives 5e-4 and 7e-5: 1.9e-4 in the geometric mean. How the coarse mesh lies on the knots makes one
+    // of the two up to twice as good and the other worse; it hardly moves their mean.
+    let mean = (sizes[0] * sizes[1]).sqrt();
+    assert!(mean < 6e-5, "{sizes:?}");
     assert!(sizes[0] / sizes[1] > 12.0, "{sizes:?}");
 }
 

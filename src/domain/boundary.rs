@@ -114,21 +114,8 @@ impl Chain {
 
     /// Point and derivative d/ds (nearly of unit length) at arc length `s`.
     pub fn evaluate(&self, s: f64) -> (Point, Vector) {
-        let s = self.wrap(s);
-        self.evaluate_in(self.samples.interval(s), s)
-    }
-
-    /// Point and derivative at `s` by the table interval `i` that holds it.
-    fn evaluate_in(&self, i: usize, s: f64) -> (Point, Vector) {
-        let (a, b) = (&self.samples[i], &self.samples[i + 1]);
-        let h = b.s - a.s;
-        let x = (s - a.s) / h;
-        let (x2, x3) = (x * x, x * x * x);
-        let (m0, m1) = (a.tangent * h, b.tangent * h);
-        let d = b.point - a.point;
-        let p = a.point + m0 * (x3 - 2.0 * x2 + x) + d * (3.0 * x2 - 2.0 * x3) + m1 * (x3 - x2);
-        let v = (m0 * (3.0 * x2 - 4.0 * x + 1.0) + d * (6.0 * x - 6.0 * x2) + m1 * (3.0 * x2 - 2.0 * x)) / h;
-        (p, v)
+        let [point, slope] = self.samples.evaluate(self.wrap(s));
+        (point.into(), slope.into())
     }
 
     /// The point at arc length `s`.

@@ -22,38 +22,15 @@ pub(crate) fn walk(
     parameters: &[f64],
     mut out: impl FnMut(usize, Four),
 ) {
-    let table = &chain.samples;
     for (first, four) in (0..).step_by(FOUR).zip(parameters.chunks(FOUR)) {
-        let mut x = [0.0; FOUR];
-        let mut h = [1.0; FOUR];
-        // Points and tangents at both ends of each interval: x, then y.
-        let (mut p, mut d, mut t0, mut t1) =
-            ([[0.0; FOUR]; 2], [[0.0; FOUR]; 2], [[0.0; FOUR]; 2], [[0.0; FOUR]; 2]);
+        let (mut point, mut slope) = ([[0.0; FOUR]; 2], [[0.0; FOUR]; 2]);
         for k in 0..FOUR {
             let s = chain.wrap(start + length * four[k.min(four.len() - 1)]);
-            let i = table.interval(s);
-            let (a, b) = (&table[i], &table[i + 1]);
-            h[k] = b.s - a.s;
-            x[k] = (s - a.s) / h[k];
+            let [p, d] = chain.samples.evaluate(s);
             for axis in 0..2 {
-                p[axis][k] = a.point[axis];
-                d[axis][k] = b.point[axis] - a.point[axis];
-                t0[axis][k] = a.tangent[axis];
-                t1[axis][k] = b.tangent[axis];
+                (point[axis][k], slope[axis][k]) = (p[axis], d[axis]);
             }
         }
-        let mut found = Four { point: p, slope: d };
-        for axis in 0..2 {
-            for k in 0..FOUR {
-                let (x, h, d) = (x[k], h[k], d[axis][k]);
-                let (x2, x3) = (x * x, x * x * x);
-                let (m0, m1) = (t0[axis][k] * h, t1[axis][k] * h);
-                let rise = 3.0 * x2 - 2.0 * x3;
-                found.point[axis][k] = p[axis][k] + m0 * (x3 - 2.0 * x2 + x) + d * rise + m1 * (x3 - x2);
-                let ends = m0 * (3.0 * x2 - 4.0 * x + 1.0) + m1 * (3.0 * x2 - 2.0 * x);
-                found.slope[axis][k] = (ends + d * (6.0 * x - 6.0 * x2)) / h;
-            }
-        }
-        out(first, found);
+        out(first, Four { point, slope });
     }
 }

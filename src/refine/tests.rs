@@ -4,6 +4,7 @@ use super::chords::chord_through;
 use super::live::LiveMesh;
 use super::merge::{diagonal_growth, Merge};
 use super::patch::Patch;
+use super::refusals::{Key, Refusals};
 use crate::domain::{Boundary, BoundaryPoint, Chain, Frame, Junction, Place, Sample};
 use crate::mesh::{QuadMesh, Vertex};
 use crate::numerics::{Point, Vector};
@@ -167,4 +168,36 @@ fn changes_one_after_another_leave_a_sound_mesh() {
     }
     let fewest: usize = live.boundary_edges.iter().sum();
     assert!(live.count < 30 && fewest < 24, "{merges} merges leave {} quads", live.count);
+}
+
+#[test]
+fn what_failed_is_worth_another_try_where_something_moved() {
+    let (_, mesh) = grid(4, 4);
+    let inside = |v: usize| mesh.vertices[v].place == Place::Interior;
+    let here = (0..mesh.vertices.len()).find(|v| inside(*v)).expect("an interior vertex");
+    let there = (0..mesh.vertices.len()).rfind(|v| inside(*v)).expect("another");
+    let live = LiveMesh::new(mesh.clone(), 4);
+    let mut refusals = Refusals::default();
+    refusals.begin(&live);
+    let [one, all] = [Key::Chord(0), Key::Chord(1)];
+    refusals.refuse(one, vec![here as u32]);
+    refusals.refuse(all, Vec::new());
+    let still = |refusals: &Refusals, touched: usize| {
+        [one, all].map(|key| refusals.still_refused(key, || vec![touched as u32]))
+    };
+    assert_eq!(still(&refusals, there), [true, true]);
+    assert!(!refusals.still_refused(Key::Chord(2), Vec::new));
+    // The mesh comes back smoothed: one vertex hardly moved, another by a third of its edges.
+    let mut smoothed = mesh;
+    smoothed.vertices[here].point.x += 0.01;
+    smoothed.vertices[there].point.x += 0.33;
+    refusals.begin(&LiveMesh::new(smoothed.clone(), 4));
+    assert_eq!(still(&refusals, there), [true, false]);
+    assert_eq!(still(&refusals, here), [true, true]);
+    // Small moves add up.
+    for k in 2..20 {
+        smoothed.vertices[here].point.x += 0.01;
+        refusals.begin(&LiveMesh::new(smoothed.clone(), 4));
+        assert_eq!(still(&refusals, here), [k < 10, k < 10], "after {k} moves");
+    }
 }

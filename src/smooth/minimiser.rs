@@ -38,6 +38,9 @@ pub(super) struct Limits {
 /// What came out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Minimum {
+    /// The value at the start, ...
+    pub before: f64,
+    /// ... and at the end.
     pub value: f64,
     pub evaluations: usize,
 }
@@ -122,6 +125,7 @@ impl Lbfgs {
             value = objective.evaluate(x, &mut self.gradient);
             evaluations += 1;
         }
+        let before = value;
         let (mut kept, mut head) = (0, 0);
         let mut history = [f64::INFINITY; 5];
         for step in 0..limits.steps {
@@ -177,12 +181,12 @@ impl Lbfgs {
             }
             std::mem::swap(&mut self.gradient, &mut self.next_gradient);
             value = trial;
-            let before = std::mem::replace(&mut history[step % 5], value);
-            if before - value < limits.progress * value.abs() {
+            let earlier = std::mem::replace(&mut history[step % 5], value);
+            if earlier - value < limits.progress * value.abs() {
                 break;
             }
         }
-        Minimum { value, evaluations }
+        Minimum { before, value, evaluations }
     }
 
     /// Two-loop recursion: the descent direction for the present gradient.

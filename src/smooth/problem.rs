@@ -181,11 +181,10 @@ impl<'a> Problem<'a> {
         self.prepare(measure);
         let mut x = std::mem::take(&mut self.unknowns);
         let scales = std::mem::take(&mut self.scales);
-        let before = self.energy(&x);
         let minimum = lbfgs.minimise(self, &mut x, &scales, reach, limits);
-        *work += self.cost(minimum.evaluations + 2);
+        *work += self.cost(minimum.evaluations + 1);
         (self.unknowns, self.scales) = (x, scales);
-        [before, minimum.value]
+        [minimum.before, minimum.value]
     }
 
     /// The work of so many evaluations, in evaluations of an element of order 5.
@@ -357,8 +356,7 @@ mod tests {
                 Sample { s, point, tangent, curvature: 0.0, segment: 0, t: i as f64 / n as f64 }
             })
             .collect();
-        let chain =
-            Chain { loop_index: 0, name: 0, ends: None, length: s, samples: samples.into(), breaks: vec![] };
+        let chain = Chain { loop_index: 0, name: 0, ends: None, length: s, samples: samples.into(), breaks: vec![] };
         let boundary = Boundary {
             frame: Frame::identity(),
             diagonal: 1.0,
