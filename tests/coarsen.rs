@@ -7,7 +7,7 @@ use quadrel::domain::{Boundary, Place};
 use quadrel::mesh::{BoundaryTolerance, QuadMesh};
 use quadrel::options::Norm;
 use quadrel::progress::Progress;
-use quadrel::refine::{coarsen, least_pieces, Limits, Reach};
+use quadrel::refine::{coarsen, least_pieces, Limits, Reach, Refusals};
 use quadrel::smooth::{Care, Optimiser};
 
 fn tolerance(order: usize, value: f64) -> Option<BoundaryTolerance> {
@@ -37,7 +37,9 @@ fn coarsened(b: &Boundary, m: QuadMesh, order: usize, value: f64, floor: f64) ->
     let before = optimiser.quality(&m);
     assert!(before.valid() && before.error_ratio <= 1.0, "the start must hold: {before:?}");
     let limits = Limits::new(floor);
-    let coarse = coarsen(m.clone(), &optimiser, limits, Reach::Far, &Progress::default()).expect("a coarser mesh");
+    let coarse =
+        coarsen(m.clone(), &optimiser, limits, Reach::Far, &mut Refusals::default(), &Progress::default())
+            .expect("a coarser mesh");
     let after = optimiser.quality(&coarse);
     assert!(after.valid() && after.error_ratio <= 1.0);
     assert!(after.min_scaled_jacobian >= floor.min(before.min_scaled_jacobian));
@@ -102,7 +104,8 @@ fn largest_size_is_kept() {
     let (b, m) = rectangle(0.8, 0.6, &even(16), &even(12));
     let optimiser = Optimiser::new(&b, 2, tolerance(2, 1e-6));
     let limits = Limits { size: 0.22, ..Limits::new(0.4) };
-    let coarse = coarsen(m, &optimiser, limits, Reach::Far, &Progress::default()).expect("a coarser mesh");
+    let coarse = coarsen(m, &optimiser, limits, Reach::Far, &mut Refusals::default(), &Progress::default())
+        .expect("a coarser mesh");
     let largest = optimiser.quality(&coarse).elements.iter().map(|e| e.size).fold(0.0, f64::max);
     assert!(largest <= 0.22 && largest > 0.1, "{largest}");
     assert!(coarse.quads.len() < 16 * 12 / 2);
@@ -112,8 +115,20 @@ fn largest_size_is_kept() {
 fn coarsening_is_deterministic_and_can_be_cancelled() {
     let (b, m) = annulus(20, 3, 0.12, 0.05);
     let optimiser = Optimiser::new(&b, 4, tolerance(4, 1e-6));
-    let run = || coarsen(m.clone(), &optimiser, Limits::new(0.4), Reach::Far, &Progress::default());
+    let run = || {
+        coarsen(
+            m.clone(),
+            &optimiser,
+            Limits::new(0.4),
+            Reach::Far,
+            &mut Refusals::default(),
+            &Progress::default(),
+        )
+    };
     assert_eq!(run(), run());
     let stop = Progress::new(|_, _| false);
-    assert_eq!(coarsen(m.clone(), &optimiser, Limits::new(0.4), Reach::Far, &stop), Err(quadrel::Error::Cancelled));
+    assert_eq!(
+        coarsen(m.clone(), &optimiser, Limits::new(0.4), Reach::Far, &mut Refusals::default(), &stop),
+        Err(quadrel::Error::Cancelled)
+    );
 }

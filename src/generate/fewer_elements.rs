@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::mesh::QuadMesh;
 use crate::options::Effort;
 use crate::progress::Stage;
-use crate::refine::{self, Limits, Reach, SizeLimit};
+use crate::refine::{self, Limits, Reach, Refusals, SizeLimit};
 use crate::smooth::{Care, Optimiser};
 use crate::stages::Stages;
 
@@ -26,6 +26,7 @@ pub(super) fn fewer_elements(
     stages: &mut Stages,
 ) -> Result<QuadMesh> {
     let limits = Limits { sizes: limit, ..Limits::new(floor) };
+    let mut refusals = Refusals::default();
     let (passes, reach) = if effort == Effort::Fast { (1, Reach::Near) } else { (PASSES, Reach::Far) };
     for pass in 0..passes {
         if pass > 0 && mesh.quads.len() > MOST_AGAIN {
@@ -33,7 +34,7 @@ pub(super) fn fewer_elements(
         }
         let progress = watch.coarsening();
         let fewer = watch.run(stages, Stage::Refine, |_| {
-            refine::coarsen(mesh.clone(), optimiser, limits, reach, &progress)
+            refine::coarsen(mesh.clone(), optimiser, limits, reach, &mut refusals, &progress)
         })?;
         if pass > 0 && fewer.quads.len() == mesh.quads.len() {
             break;

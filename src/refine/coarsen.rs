@@ -11,6 +11,7 @@ use super::live::LiveMesh;
 use super::merge::{diagonal_growth, Merge, Refusal};
 use super::patch::Patch;
 use super::pieces::least_pieces;
+use super::refusals::{Key, Refusals};
 use super::trial::{settle, Limits, Outcome, Reach};
 use crate::domain::{Boundary, Place};
 use crate::error::{Error, Result};
@@ -19,7 +20,7 @@ use crate::numerics::tolerances::ORDER_TIE;
 use crate::progress::{Progress, Stage};
 use crate::smooth::{Care, ElementQuality, Optimiser};
 use std::cmp::Ordering;
-use std::collections::{BinaryHeap, HashMap, HashSet};
+use std::collections::{BinaryHeap, HashSet};
 
 /// Scaled Jacobian below which an element counts as spoiled by a merge.
 const SPOILED: f64 = 0.15;
@@ -49,28 +50,10 @@ struct Coarsening<'a> {
     live: LiveMesh,
     /// Quality of the living quads.
     quality: Vec<ElementQuality>,
-    /// Number of changes made.
-    time: usize,
-    /// When each vertex was last moved or merged.
-    changed: Vec<usize>,
-    failed: HashMap<Key, Failure>,
+    refusals: &'a mut Refusals,
     /// Element evaluations spent, and when to stop.
     work: u64,
     most_work: u64,
-}
-
-/// Names what can be removed: a chord by the least of its edges, a diagonal by its ends. Neither
-/// changes its name because of changes elsewhere.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-enum Key {
-    Chord(u32),
-    Diagonal([u32; 2]),
-}
-
-/// When something was refused, and the vertices at fault; none if it is due to all of them.
-struct Failure {
-    time: usize,
-    at: Vec<u32>,
 }
 
 /// Something to be tried: the higher `rank` first, then the lesser key.
@@ -108,6 +91,7 @@ pub fn coarsen(
     optimiser: &Optimiser,
     limits: Limits,
     reach: Reach,
+    refusals: &mut Refusals,
     progress: &Progress,
 ) -> Result<QuadMesh> {
     let boundary = optimiser.boundary();
@@ -139,6 +123,8 @@ pub fn coarsen(
         && largest <= limits.size
         && (0u32..).zip(&quality.elements).all(|(q, e)| limits.excess_of(&mesh, q, e.size) <= limits.excess);
     let most_work = (MOST_WORK_PER_QUAD * mesh.quads.len() as u64).clamp(MOST_WORK, MOST_WORK_AT_ALL);
+    let live = LiveMesh::new(mesh, boundary.chains.len());
+    refusals.begin(&live);
     let mut run = Coarsening {
         boundary,
         optimiser,
@@ -147,23 +133,24 @@ pub fn coarsen(
         holds,
         least,
         quality: quality.elements,
-        time: 0,
-        changed: vec![0; mesh.vertices.len()],
-        live: LiveMesh::new(mesh, boundary.chains.len()),
-        failed: HashMap::new(),
+        live,
+        refusals,
         work: 0,
         most_work,
     };
     for pass in 0..PASSES {
-        let before = run.time;
+        let before = run.refusals.now();
         progress.report(Stage::Refine, pass as f64 / PASSES as f64)?;
         run.remove_chords(progress)?;
         run.collapse_diagonals(progress)?;
-        if run.time == before || run.work > run.most_work {
+        if run.refusals.now() == before || run.work > run.most_work {
             break;
         }
     }
-    Ok(run.live.compact())
+    let Coarsening { live, refusals, .. } = run;
+    let (mesh, numbers) = live.renumbered();
+    refusals.renumber(&numbers);
+    Ok(mesh)
 }
 
 impl<'a> Coarsening<'a> {
@@ -190,26 +177,13 @@ impl<'a> Coarsening<'a> {
         merge.removed as f64 / (1.0 + spoiled as f64 + 0.5 * merge.irregularity.max(0) as f64)
     }
 
-    /// Whether any of the vertices changed after `time`.
-    fn changed_since(&self, vertices: &[u32], time: usize) -> bool {
-        vertices.iter().any(|v| self.changed[*v as usize] > time)
-    }
-
     fn corners(&self, quads: &[u32]) -> Vec<u32> {
         quads.iter().flat_map(|q| self.live.mesh.quads[*q as usize]).collect()
     }
 
     /// Whether `key`, whose quads are `quads`, was refused and nothing changed since that it was refused for.
     fn still_refused(&self, key: Key, quads: &[u32]) -> bool {
-        self.failed.get(&key).is_some_and(|failure| {
-            let all = failure.at.is_empty().then(|| self.corners(quads));
-            !self.changed_since(all.as_ref().unwrap_or(&failure.at), failure.time)
-        })
-    }
-
-    /// Notes that `key` is impossible as the mesh is.
-    fn refuse(&mut self, key: Key) {
-        self.failed.insert(key, Failure { time: self.time, at: Vec::new() });
+        self.refusals.still_refused(key, || self.corners(quads))
     }
 
     /// The limits within some rings around the quads `at`: what is worse there already need not become
@@ -248,35 +222,33 @@ impl<'a> Coarsening<'a> {
         let settled = match outcome {
             Ok(settled) => settled,
             Err(at) => {
-                self.failed.insert(key, Failure { time: self.time, at });
+                self.refusals.refuse(key, at);
                 return None;
             }
         };
-        self.time += 1;
-        for (v, _) in &settled.removal.stars {
-            self.changed[*v as usize] = self.time;
-        }
+        let merged: Vec<u32> = settled.removal.stars.iter().map(|(v, _)| *v).collect();
         self.live.splice(&settled.patch, settled.removal);
         let active: Vec<u32> = settled.active.iter().map(|q| settled.patch.quads[*q as usize]).collect();
         for (q, quality) in active.iter().zip(settled.quality) {
             self.quality[*q as usize] = quality;
-            for v in self.live.mesh.quads[*q as usize] {
-                self.changed[v as usize] = self.time;
-            }
         }
+        let mut moved = self.corners(&active);
+        moved.sort_unstable();
+        moved.dedup();
+        self.refusals.change(&self.live, &merged, moved);
         Some(active)
     }
 
     fn remove_chords(&mut self, progress: &Progress) -> Result<()> {
         let mut queue = BinaryHeap::new();
         for chord in chords(&self.live) {
-            let key = name(&chord);
+            let key = Key::of_chord(&chord);
             if self.still_refused(key, &chord.quads) {
                 continue;
             }
             match self.merge_chord(&chord).map(|merge| self.score(&merge)) {
-                Ok(score) => queue.push(Candidate { rank: [score, 0.0], key, time: self.time }),
-                Err(_) => self.refuse(key),
+                Ok(score) => queue.push(Candidate { rank: [score, 0.0], key, time: self.refusals.now() }),
+                Err(_) => self.refusals.refuse(key, Vec::new()),
             }
             self.work += chord.quads.len() as u64;
         }
@@ -291,18 +263,18 @@ impl<'a> Coarsening<'a> {
             }
             let chord = chord_through(&self.live.mesh, edge);
             // A chord that has become part of another waits for the next pass, under the other's name.
-            if name(&chord) != candidate.key {
+            if Key::of_chord(&chord) != candidate.key {
                 continue;
             }
-            let stale = self.changed_since(&self.corners(&chord.quads), candidate.time);
+            let stale = self.refusals.changed_since(&self.corners(&chord.quads), candidate.time);
             let Ok(merge) = self.merge_chord(&chord) else {
-                self.refuse(candidate.key);
+                self.refusals.refuse(candidate.key, Vec::new());
                 continue;
             };
             if stale {
                 let score = self.score(&merge);
                 if queue.peek().is_some_and(|next| score < STILL_BEST * next.rank[0]) {
-                    queue.push(Candidate { rank: [score, 0.0], time: self.time, ..candidate });
+                    queue.push(Candidate { rank: [score, 0.0], time: self.refusals.now(), ..candidate });
                     continue;
                 }
             }
@@ -351,7 +323,7 @@ impl<'a> Coarsening<'a> {
                 continue;
             }
             if let Some(merge) = self.merge_diagonal(q, ends) {
-                queue.push(Candidate { rank: self.rank_diagonal(q, &merge), key, time: self.time });
+                queue.push(Candidate { rank: self.rank_diagonal(q, &merge), key, time: self.refusals.now() });
             }
         }
     }
@@ -375,7 +347,7 @@ impl<'a> Coarsening<'a> {
             }
             let Some(merge) = self.merge_diagonal(q, ends) else { continue };
             let rank = self.rank_diagonal(q, &merge);
-            let now = Candidate { rank, time: self.time, ..candidate };
+            let now = Candidate { rank, time: self.refusals.now(), ..candidate };
             if rank != candidate.rank && queue.peek().is_some_and(|next| now < *next) {
                 queue.push(now);
                 continue;
@@ -389,9 +361,4 @@ impl<'a> Coarsening<'a> {
         }
         Ok(())
     }
-}
-
-/// A chord's name.
-fn name(chord: &Chord) -> Key {
-    Key::Chord(chord.rungs.iter().copied().min().unwrap_or_default())
 }

@@ -19,6 +19,13 @@ pub(super) struct LiveMesh {
     pub boundary_edges: Vec<usize>,
 }
 
+/// New numbers by old ones, in the same order; `NONE` for what is gone.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Numbering {
+    pub vertices: Vec<u32>,
+    pub edges: Vec<u32>,
+}
+
 /// What a change takes away, to be applied together with the patch that replaces it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Removal {
@@ -96,6 +103,11 @@ impl LiveMesh {
 
     /// The living mesh alone, numbered in the old order.
     pub fn compact(self) -> QuadMesh {
+        self.renumbered().0
+    }
+
+    /// The same with the new numbers.
+    pub fn renumbered(self) -> (QuadMesh, Numbering) {
         let LiveMesh { mesh, stars, alive, .. } = self;
         let number = |keep: &[bool]| {
             let mut number = vec![NONE; keep.len()];
@@ -119,13 +131,14 @@ impl LiveMesh {
         let quads = kept(mesh.quads, &alive).into_iter().map(|q| q.map(|v| vertex[v as usize])).collect();
         let quad_edges =
             kept(mesh.quad_edges, &alive).into_iter().map(|q| q.map(|e| edge[e as usize])).collect();
-        QuadMesh {
+        let mesh = QuadMesh {
             vertices: kept(mesh.vertices, &vertex_kept),
             quads,
             region: kept(mesh.region, &alive),
             edges,
             quad_edges,
-        }
+        };
+        (mesh, Numbering { vertices: vertex, edges: edge })
     }
 }
 

@@ -79,6 +79,8 @@ impl Stretch<'_> {
     pub fn make_room(&self, at: usize) -> Option<Room> {
         let n = self.len();
         let mut reach = 1;
+        // Errors of the edges as they are: each window begins with those of the windows in it.
+        let mut known = vec![None; n];
         loop {
             let width = (2 * reach + 1).min(n);
             let low = if self.closed() {
@@ -86,7 +88,7 @@ impl Stretch<'_> {
             } else {
                 at.saturating_sub(reach).min(n - width)
             };
-            if let Some(lengths) = self.share_out(low, width) {
+            if let Some(lengths) = self.share_out(low, width, &mut known) {
                 let mut ends = self.ends.clone();
                 self.apply(&mut ends, low, &lengths);
                 return Some(Room { ends, all: false });
@@ -100,16 +102,18 @@ impl Stretch<'_> {
     }
 
     /// New lengths of the `width` edges from `low` on, all within the tolerance; `None` if they have no
-    /// room.
-    fn share_out(&self, low: usize, width: usize) -> Option<Vec<f64>> {
+    /// room. `known`: the errors of edges as they are, as far as they were asked for.
+    fn share_out(&self, low: usize, width: usize, known: &mut [Option<f64>]) -> Option<Vec<f64>> {
         let n = self.len();
         let exponent = 1.0 / growth(self.error);
         let mut trial = self.ends.clone();
         let mut lengths: Vec<f64> =
             (low..low + width).map(|i| self.ends[i % n + 1] - self.ends[i % n]).collect();
         let total: f64 = lengths.iter().sum();
+        let mut ratios: Vec<f64> = (low..low + width)
+            .map(|i| *known[i % n].get_or_insert_with(|| self.ratio(&self.ends, i)))
+            .collect();
         for _ in 0..ROUNDS {
-            let ratios: Vec<f64> = (low..low + width).map(|i| self.ratio(&trial, i)).collect();
             if ratios.iter().all(|r| *r <= ALLOWED) {
                 return Some(lengths);
             }
@@ -126,6 +130,7 @@ impl Stretch<'_> {
                 *l *= if *r > 1.0 { 1.0 + share * (r - 1.0) } else { *r };
             }
             self.apply(&mut trial, low, &lengths);
+            ratios = (low..low + width).map(|i| self.ratio(&trial, i)).collect();
         }
         None
     }

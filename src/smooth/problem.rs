@@ -356,7 +356,8 @@ mod tests {
                 Sample { s, point, tangent, curvature: 0.0, segment: 0, t: i as f64 / n as f64 }
             })
             .collect();
-        let chain = Chain { loop_index: 0, name: 0, ends: None, length: s, samples: samples.into(), breaks: vec![] };
+        let chain =
+            Chain { loop_index: 0, name: 0, ends: None, length: s, samples: samples.into(), breaks: vec![] };
         let boundary = Boundary {
             frame: Frame::identity(),
             diagonal: 1.0,

@@ -55,7 +55,14 @@ pub fn add_loop(boundary: &mut Boundary, chains: &[Vec<Point>]) {
             boundary.area += if k > 0 { cross(a.coords, point.coords) / 2.0 } else { 0.0 };
         }
         let ends = Some([first + i, first + (i + 1) % n]);
-        boundary.chains.push(Chain { loop_index, name: 0, ends, length: s, samples: samples.into(), breaks: Vec::new() });
+        boundary.chains.push(Chain {
+            loop_index,
+            name: 0,
+            ends,
+            length: s,
+            samples: samples.into(),
+            breaks: Vec::new(),
+        });
     }
 }
 
