@@ -156,38 +156,30 @@ pub(super) fn refine_and_smooth(
     };
     onto_breaks(&mut mesh, stages, watch)?;
     // Parts of valid elements are valid, parts of edges nearer to the curve, and a solver's error falls with their
-    // size as the order promises: nothing is smoothed any more.
+    // size as the order promises: no shape is smoothed any more.
     let slack = if limit.is_some() { TOO_LARGE } else { 1.0 };
     if options.element_size.is_some() || options.max_element_size.is_some() {
         let whole = SizeLimit::new(&allowed);
         let even = coarsens && options.element_size.is_none();
         let size = options.max_element_size.filter(|_| even).map(|size| size / boundary.frame.scale);
         // New vertices, too, go to breaks; where that made an element too large or worse it is divided once more.
-        // First for the size alone: what vertices at breaks mend takes no elements.
-        for size in [None, size, size] {
+        // First for the size alone: what vertices at breaks and elsewhere mend takes no elements.
+        for (pass, parts_for) in [None, size, size].into_iter().enumerate() {
             let before = mesh.quads.len();
             mesh = watch.run(stages, Stage::Refine, |_| {
-                whole.divide_evenly(mesh, boundary, slack, options.order, options.max_elements, size)
+                whole.divide_evenly(mesh, boundary, slack, options.order, options.max_elements, parts_for)
             })?;
-            if mesh.quads.len() == before {
+            if mesh.quads.len() > before {
+                note(stages, &optimiser, &mesh, "divide");
+                onto_breaks(&mut mesh, stages, watch)?;
+            } else if pass > 0 {
                 continue;
             }
-            note(stages, &optimiser, &mesh, "divide");
-            onto_breaks(&mut mesh, stages, watch)?;
-            if std::env::var("V1").is_ok() {
-                if let Some(size) = options.max_element_size.filter(|_| even).map(|size| size / boundary.frame.scale).filter(|_| mesh.quads.len() <= MOST_FOLLOWING) {
-                    let follow = |_: &mut Stages| Ok(follow_waves(&mut mesh, size, &optimiser, floor));
-                    if watch.run(stages, Stage::Smooth, follow)? {
-                        note(stages, &optimiser, &mesh, "follow");
-                    }
+            if let Some(size) = size.filter(|_| mesh.quads.len() <= MOST_FOLLOWING) {
+                let follow = |_: &mut Stages| Ok(follow_waves(&mut mesh, size, &optimiser, floor));
+                if watch.run(stages, Stage::Smooth, follow)? {
+                    note(stages, &optimiser, &mesh, "follow");
                 }
-            }
-        }
-        if std::env::var("V1").is_ok() || std::env::var("V2").is_ok() {} else
-        if let Some(size) = size.filter(|_| mesh.quads.len() <= MOST_FOLLOWING) {
-            let follow = |_: &mut Stages| Ok(follow_waves(&mut mesh, size, &optimiser, floor));
-            if watch.run(stages, Stage::Smooth, follow)? {
-                note(stages, &optimiser, &mesh, "follow");
             }
         }
     }
@@ -204,7 +196,7 @@ pub(super) fn refine_and_smooth(
 pub(super) fn follow_waves(mesh: &mut QuadMesh, size: f64, optimiser: &Optimiser, floor: f64) -> bool {
     let allowed = |_: Point| size;
     let limit = SizeLimit::new(&allowed);
-    let small = |mesh: &QuadMesh| !limit.too_long(mesh, 1.0 + 2.0 * ORDER_TIE).contains(&true);
+    let small = |mesh: &QuadMesh| !limit.too_long(mesh, 1.0 + ORDER_TIE).contains(&true);
     optimiser.follow(mesh, (1.0 / size).max(std::f64::consts::TAU), floor, size, &small)
 }
 

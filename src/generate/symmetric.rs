@@ -247,12 +247,10 @@ fn divided(
         (small && finer.elements.len() >= found.elements.len()).then_some(finer)
     };
     let even = (options.subdivision == Subdivision::EqualError).then_some(size);
-    // First for the size alone, as the direct mesh.
-    let mut divided = once(found, None)?;
-    for _ in 0..2 {
-        divided = even.and_then(|_| once(&divided, even)).unwrap_or(divided);
-    }
-    if even.is_some() && divided.mesh.quads.len() <= MOST_FOLLOWING {
+    let followed = |divided: Symmetrised| {
+        if even.is_none() || divided.mesh.quads.len() > MOST_FOLLOWING {
+            return divided;
+        }
         let mut mesh = divided.mesh.clone();
         let moved = follow_waves(&mut mesh, size, optimiser, floor(options, boundary));
         let better = moved.then(|| averaged(&mesh, boundary, group)).flatten();
@@ -264,7 +262,15 @@ fn divided(
                 && quality.error_ratio <= bar.error_ratio
                 && !limit.too_long(&better.mesh, 1.0 + 2.0 * ORDER_TIE).contains(&true)
         };
-        divided = better.filter(kept).unwrap_or(divided);
+        better.filter(kept).unwrap_or(divided)
+    };
+    // First for the size alone, as the direct mesh.
+    let mut divided = followed(once(found, None)?);
+    for _ in 0..2 {
+        if let Some(finer) = even.and_then(|_| once(&divided, even)) {
+            let same = finer.mesh.quads.len() == divided.mesh.quads.len();
+            divided = if same { divided } else { followed(finer) };
+        }
     }
     Some(divided)
 }

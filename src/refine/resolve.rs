@@ -20,9 +20,9 @@ use std::collections::BTreeMap;
 const LINES: usize = 4;
 /// Most quads of a mesh that is looked at: with more the size alone counts.
 const MOST_QUADS: usize = 50_000;
-/// What a step must bring: the error falls with the number of elements as it does in even division at third order,
-/// which is what edges get whose curvature is not smooth inside.
-const LEAST_ORDER: f64 = 3.0;
+/// What steps must bring: the error falls with the number of elements as it does in even division at fifth order.
+/// Edges get the third, whose curvature is not smooth inside: dividing them for that would have no end.
+const LEAST_ORDER: f64 = 5.0;
 
 struct Chord {
     rungs: Vec<u32>,
@@ -97,30 +97,41 @@ impl<'a> Resolution<'a> {
             total.iter_mut().zip(own).for_each(|(t, e)| *t += e);
         }
         loop {
-            let mut steps = self.steps(&total);
-            let best = steps.iter().map(|s| s.worth).fold(LEAST_ORDER, f64::max);
-            // Images of each other in a symmetric mesh go together.
-            steps.retain(|s| s.worth > (1.0 - EQUAL_WORTH) * best);
-            if steps.is_empty() || best <= LEAST_ORDER {
+            let steps = self.steps(&total);
+            let Some(best) = self.best_together(&steps, &total, &ideal) else {
                 return self.elements() <= most;
-            }
-            for step in steps {
-                let (before, after) = (
-                    self.errors(step.chord, self.chords[step.chord].parts),
-                    self.errors(step.chord, step.parts),
-                );
-                for i in 0..total.len() {
-                    total[i] = (total[i] - before[i] + after[i]).max(ideal[i]);
-                }
+            };
+            for step in &steps[..best] {
                 self.chords[step.chord].parts = step.parts;
             }
+            total = after(&steps[..best], &total, &ideal);
             if self.elements() > most {
                 return false;
             }
         }
     }
 
-    /// For each chord the best step, of those worth more than [`LEAST_ORDER`].
+    /// How many of the steps, the best first, bring most together, if that is more than [`LEAST_ORDER`]. Where several
+    /// chords share an error each alone brings little: what is left of it hides the gain.
+    fn best_together(&self, steps: &[Step], total: &Errors, ideal: &Errors) -> Option<usize> {
+        let elements = self.elements();
+        let mut best: Option<(usize, f64)> = None;
+        let mut left = *total;
+        let mut more = 0.0;
+        for (k, step) in steps.iter().enumerate() {
+            left = after(&steps[k..=k], &left, ideal);
+            more += step.more;
+            // Images of each other in a symmetric mesh go together.
+            let tied = steps.get(k + 1).is_some_and(|next| next.worth > (1.0 - EQUAL_WORTH) * step.worth);
+            let worth = order(total, &left, 1.0 + more / elements);
+            if !tied && worth > best.map_or(LEAST_ORDER, |b| b.1) {
+                best = Some((k + 1, worth));
+            }
+        }
+        best.map(|b| b.0)
+    }
+
+    /// For each chord the best step, those first that are worth most alone.
     fn steps(&mut self, total: &Errors) -> Vec<Step> {
         let elements = self.elements();
         let mut steps = Vec::new();
@@ -131,23 +142,20 @@ impl<'a> Resolution<'a> {
                 f64::from(self.chords[self.of_quad[*q as usize][1 - s] as usize].parts)
             };
             let row: f64 = self.chords[chord].passes.iter().map(across).sum();
-            let worth = |parts: u32, after: &Errors| {
-                let fall = |i: usize| -((after[i] - before[i]).min(0.0) / total[i]).max(-MOST_FALL).ln_1p();
-                let mean = (0..total.len()).map(fall).sum::<f64>() / total.len() as f64;
-                mean / (row * f64::from(parts - n) / elements).ln_1p()
-            };
             let mut best: Option<Step> = None;
             for parts in [n + 1, n + 2, (2 * n).max(n + 3)] {
-                // Measured only if it could be worth it.
-                if worth(parts, &Errors::default()) > LEAST_ORDER {
-                    let worth = worth(parts, &self.errors(chord, parts));
-                    if worth > best.as_ref().map_or(LEAST_ORDER, |b| b.worth) {
-                        best = Some(Step { chord, parts, worth });
-                    }
+                let after = self.errors(chord, parts);
+                let more = row * f64::from(parts - n);
+                let mut left = *total;
+                (0..total.len()).for_each(|i| left[i] -= (before[i] - after[i]).max(0.0));
+                let worth = order(total, &left, 1.0 + more / elements);
+                if worth > best.as_ref().map_or(0.0, |b| b.worth) {
+                    best = Some(Step { chord, parts, more, before, after, worth });
                 }
             }
             steps.extend(best);
         }
+        steps.sort_by(|a, b| b.worth.total_cmp(&a.worth));
         steps
     }
 
@@ -205,12 +213,36 @@ impl<'a> Resolution<'a> {
     }
 }
 
-/// More parts for a chord, and what they bring: the order at which the error falls with the number of elements.
+/// More parts for a chord.
 struct Step {
     chord: usize,
     parts: u32,
+    /// Quads that it adds.
+    more: f64,
+    /// Square errors on the quads that the chord passes.
+    before: Errors,
+    after: Errors,
+    /// What it brings alone.
     worth: f64,
 }
 
-/// Largest share of the error that one step is said to take away.
-const MOST_FALL: f64 = 1.0 - 1e-12;
+/// What steps leave of `total`: not less than `ideal`.
+fn after(steps: &[Step], total: &Errors, ideal: &Errors) -> Errors {
+    let mut left = *total;
+    for step in steps {
+        for i in 0..left.len() {
+            left[i] = (left[i] - step.before[i] + step.after[i]).max(ideal[i]);
+        }
+    }
+    left
+}
+
+/// The order at which square errors fall from `before` to `after`, the mean over the degrees, with `growth` times as
+/// many elements.
+fn order(before: &Errors, after: &Errors, growth: f64) -> f64 {
+    let fall = |i: usize| (before[i] / after[i].max(LEAST_LEFT * before[i])).ln();
+    (0..before.len()).map(fall).sum::<f64>() / before.len() as f64 / growth.ln()
+}
+
+/// Least share of an error that steps are said to leave.
+const LEAST_LEFT: f64 = 1e-12;
