@@ -5,7 +5,8 @@
 //! are small: a few such elements hold most of a solution's error. Dividing their chords costs few elements.
 //!
 //! *In:* a mesh and into how many parts each edge is to be divided for its size. *Out:* the same or more. Chords are
-//! divided more, the best first, while that lowers the error of waves 2πh long by enough for its elements.
+//! divided more, those together that bring most for their elements, while that lowers the error of waves 2πh long by
+//! enough.
 
 use super::chords::chord_through;
 use super::coons::CoonsMap;
@@ -98,7 +99,7 @@ impl<'a> Resolution<'a> {
         }
         loop {
             let steps = self.steps(&total);
-            let Some(best) = self.best_together(&steps, &total, &ideal) else {
+            let Some(best) = best_together(&steps, &total, &ideal, self.elements()) else {
                 return self.elements() <= most;
             };
             for step in &steps[..best] {
@@ -109,26 +110,6 @@ impl<'a> Resolution<'a> {
                 return false;
             }
         }
-    }
-
-    /// How many of the steps, the best first, bring most together, if that is more than [`LEAST_ORDER`]. Where several
-    /// chords share an error each alone brings little: what is left of it hides the gain.
-    fn best_together(&self, steps: &[Step], total: &Errors, ideal: &Errors) -> Option<usize> {
-        let elements = self.elements();
-        let mut best: Option<(usize, f64)> = None;
-        let mut left = *total;
-        let mut more = 0.0;
-        for (k, step) in steps.iter().enumerate() {
-            left = after(&steps[k..=k], &left, ideal);
-            more += step.more;
-            // Images of each other in a symmetric mesh go together.
-            let tied = steps.get(k + 1).is_some_and(|next| next.worth > (1.0 - EQUAL_WORTH) * step.worth);
-            let worth = order(total, &left, 1.0 + more / elements);
-            if !tied && worth > best.map_or(LEAST_ORDER, |b| b.1) {
-                best = Some((k + 1, worth));
-            }
-        }
-        best.map(|b| b.0)
     }
 
     /// For each chord the best step, those first that are worth most alone.
@@ -226,6 +207,25 @@ struct Step {
     worth: f64,
 }
 
+/// How many of the steps, the best first, bring most together in a mesh of so many elements, if that is more than
+/// [`LEAST_ORDER`]. Where several chords share an error each alone brings little: what the others leave hides the gain.
+fn best_together(steps: &[Step], total: &Errors, ideal: &Errors, elements: f64) -> Option<usize> {
+    let mut best: Option<(usize, f64)> = None;
+    let mut left = *total;
+    let mut more = 0.0;
+    for (k, step) in steps.iter().enumerate() {
+        left = after(&steps[k..=k], &left, ideal);
+        more += step.more;
+        // Images of each other in a symmetric mesh go together.
+        let tied = steps.get(k + 1).is_some_and(|next| next.worth > (1.0 - EQUAL_WORTH) * step.worth);
+        let worth = order(total, &left, 1.0 + more / elements);
+        if !tied && worth > best.map_or(LEAST_ORDER, |b| b.1) {
+            best = Some((k + 1, worth));
+        }
+    }
+    best.map(|b| b.0)
+}
+
 /// What steps leave of `total`: not less than `ideal`.
 fn after(steps: &[Step], total: &Errors, ideal: &Errors) -> Errors {
     let mut left = *total;
@@ -246,3 +246,39 @@ fn order(before: &Errors, after: &Errors, growth: f64) -> f64 {
 
 /// Least share of an error that steps are said to leave.
 const LEAST_LEFT: f64 = 1e-12;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chords_that_share_an_error_are_divided_together() {
+        // Ten in a hundred elements for a thousandth of an error: worth it only where nothing else holds the error.
+        let (total, ideal) = ([1.0; 3], [1e-12; 3]);
+        let steps = |count: usize| -> Vec<Step> {
+            let share = 1.0 / count as f64;
+            let (before, after) = ([share; 3], [1e-3 * share; 3]);
+            let left = total.map(|t| t - share + 1e-3 * share);
+            let worth = order(&total, &left, 1.1);
+            (0..count).map(|chord| Step { chord, parts: 2, more: 10.0, before, after, worth }).collect()
+        };
+        for count in [1, 2, 4, 8] {
+            let mut steps = steps(count);
+            assert_eq!(best_together(&steps, &total, &ideal, 100.0), Some(count), "{count}");
+            // The first alone would not be taken.
+            let alone = best_together(&steps[..1], &total, &ideal, 100.0);
+            assert_eq!(alone.is_some(), count <= 2, "{count}");
+            // A chord that takes too many elements for nothing is left out.
+            steps.push(Step {
+                chord: count,
+                parts: 2,
+                more: 500.0,
+                before: [0.0; 3],
+                after: [0.0; 3],
+                worth: 0.0,
+            });
+            assert_eq!(best_together(&steps, &total, &ideal, 100.0), Some(count), "{count}");
+        }
+        assert_eq!(best_together(&[], &total, &ideal, 100.0), None);
+    }
+}

@@ -1,6 +1,7 @@
 //! A mesh, or a few of its quads, as a function of unknowns: interior vertices, arc lengths of boundary
 //! vertices, bubbles of interior edges.
 
+mod demands;
 mod gather;
 mod limits;
 mod metric;
@@ -20,7 +21,8 @@ use pulp::NullaryFnOnce;
 use sampling::arc_lengths;
 use waves::WaveTerm;
 
-pub(super) use waves::{Demands, MORE_SAMPLES};
+pub(super) use demands::Demands;
+pub(super) use waves::MORE_SAMPLES;
 
 /// Weight of an even Jacobian against angles in the shape energy; uneven elements get more.
 const EVENNESS: f64 = 0.1;
