@@ -187,7 +187,8 @@ impl BidirectedFlow {
 
     /// Adds a general row; the next [`solve`](Self::solve) goes on from the current point.
     pub fn add_row(&mut self, row: Row) {
-        for r in 0..self.rows.len() {
+        let sharing = row.variables.first().map_or(Vec::new(), |a| self.rows_of[*a as usize].clone());
+        for r in sharing.into_iter().map(|r| r as usize) {
             let old = &mut self.rows[r];
             let contains = row.variables.iter().all(|a| old.variables.contains(a));
             if contains && row.at_least >= old.at_least {

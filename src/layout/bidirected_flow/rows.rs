@@ -1,7 +1,10 @@
 //! General rows: satisfied one after the other, then chosen better.
 
 use super::balance::{Walk, TOO_DEAR};
-use super::{BidirectedFlow, Obstruction, Step};
+use super::{BidirectedFlow, Obstruction, Step, COST_UNITS};
+
+/// Costs up to which walks are looked for, in turn until there is one.
+const REACHES: [i64; 4] = [COST_UNITS as i64, 4 * COST_UNITS as i64, 16 * COST_UNITS as i64, TOO_DEAR];
 
 /// Most work of [`BidirectedFlow::polish`]: trials times variables.
 const POLISH_WORK: usize = 30_000;
@@ -35,9 +38,13 @@ impl BidirectedFlow {
 
     /// Applies a walk and makes the rows that it robs dearer.
     fn apply_counting(&mut self, steps: &[Step]) {
-        let before = self.row_sums.clone();
+        let mut concerned: Vec<u32> =
+            steps.iter().flat_map(|s| &self.rows_of[s.0 as usize]).copied().collect();
+        concerned.sort_unstable();
+        concerned.dedup();
+        let before: Vec<i32> = concerned.iter().map(|q| self.row_sums[*q as usize]).collect();
         self.apply(steps);
-        for (q, &sum_before) in before.iter().enumerate() {
+        for (q, sum_before) in concerned.iter().map(|q| *q as usize).zip(before) {
             if self.row_sums[q] < sum_before && self.row_sums[q] < self.rows[q].at_least {
                 self.robbed[q] += 1;
             }
@@ -52,17 +59,20 @@ impl BidirectedFlow {
     pub(super) fn satisfy_rows(&mut self) -> Result<(), Obstruction> {
         let mut left = 200 + 20 * self.rows.len();
         while let Some(r) = self.short_row() {
+            // Near walks first: the search for one of a variable that has only dear ones goes through everything.
             let mut best: Option<(i64, Vec<Step>)> = None;
             let mut seen = Vec::new();
-            for a in self.rows[r].variables.clone() {
-                let known = best.as_ref().map_or(TOO_DEAR, |b| b.0);
-                match self.raising(a, known) {
-                    Err(states) => seen.extend(states),
-                    Ok(walk) => {
-                        if best.as_ref().is_none_or(|b| walk.0 < b.0) {
-                            best = Some(walk);
-                        }
+            for limit in REACHES {
+                for a in self.rows[r].variables.clone() {
+                    let known = best.as_ref().map_or(limit, |b| b.0);
+                    match self.raising(a, known) {
+                        Err(states) if limit == TOO_DEAR => seen.extend(states),
+                        Ok(walk) if walk.0 < known => best = Some(walk),
+                        _ => {}
                     }
+                }
+                if best.is_some() {
+                    break;
                 }
             }
             left -= 1;
