@@ -58,7 +58,7 @@ impl BidirectedFlow {
         // Every cycle of parent links runs through one that is new since the last look.
         let mut changed: Vec<u32> = Vec::new();
         let mut cycles = Cycles::new(states);
-        let mut left = if self.by_labels { 200 } else { 4_000 } * (self.variables.len() as u64 + 100);
+        let mut left = if self.by_labels { 20 } else { 4_000 } * (self.variables.len() as u64 + 100);
         let mut leaving = Vec::new();
         let mut taken = BTreeSet::new();
         let mut refusals = 0;
