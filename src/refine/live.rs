@@ -147,7 +147,7 @@ pub(super) fn rings_around<'a>(
     let mut list = Vec::new();
     for ring in 0..=rings {
         let own = new_among(front, &mut done);
-        let quads = new_among(own.into_iter().flat_map(|v| star(v)).copied().collect(), &mut seen);
+        let quads = new_among(own.into_iter().flat_map(&star).copied().collect(), &mut seen);
         front = quads.iter().flat_map(|q| corners(*q)).collect();
         list.extend(quads.into_iter().map(|q| (q, ring)));
     }
