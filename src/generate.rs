@@ -6,6 +6,7 @@
 
 mod blocks;
 mod fewer_elements;
+mod proof;
 mod rounds;
 mod smooth_edges;
 mod starts;
@@ -98,9 +99,7 @@ fn one_mesh(domain: &Domain, options: &Options, finer: usize, stages: &mut Stage
                     return Ok(mesh);
                 }
             }
-            watch.run(stages, Stage::Mesh, |_| {
-                HighOrderMesh::new(&elements.mesh, &boundary, domain, &tolerance)
-            })
+            proof::proven(&elements.mesh, &boundary, domain, options, &tolerance, &mut watch, stages)
         });
         match result {
             Ok(mesh) => return Ok(mesh),

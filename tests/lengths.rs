@@ -223,3 +223,43 @@ fn thousands_of_arcs_are_solved_to_a_local_optimum() {
     program.solve().unwrap();
     assert!(program.flow.cost() > 0.99 * cost);
 }
+
+/// Programs side by side are a large one, which is solved in another way.
+#[test]
+fn a_large_program_costs_what_its_parts_cost() {
+    for (with_rows, margin) in [(false, 1.001), (true, 1.02)] {
+        let mut random = Random(11);
+        let mut apart = 0.0;
+        let (mut equations, mut variables, mut rows) = (0, Vec::new(), Vec::new());
+        for seed in 1..=16 {
+            let (boundary, layout) = random_t_mesh(200, seed);
+            let size = |_| 0.09;
+            let wanted = LengthTargets::new(&layout, &boundary, &Targets::new(&size, &[]));
+            let LengthProgram { mut flow, region_of, .. } = LengthProgram::new(&layout, &boundary, &wanted);
+            let part = flow.variables().to_vec();
+            let first = variables.len() as u32;
+            for _ in 0..if with_rows { 25 } else { 0 } {
+                let own =
+                    vec![random.below(layout.arcs.len()) as u32, random.below(layout.arcs.len()) as u32];
+                flow.add_row(Row { variables: own.clone(), at_least: 2 });
+                rows.push(Row { variables: own.iter().map(|a| a + first).collect(), at_least: 2 });
+            }
+            assert!(flow.solve().is_ok());
+            apart += flow.cost();
+            variables.extend(part.into_iter().map(|variable| {
+                let ends = variable.ends.map(|end| match end {
+                    End::FREE => End::FREE,
+                    end => End { equation: end.equation + equations as u32, ..end },
+                });
+                Variable { ends, ..variable }
+            }));
+            equations += region_of.len();
+        }
+        assert!(equations > 5000, "{equations} equations make no large program");
+        let mut flow = BidirectedFlow::new(equations, variables);
+        rows.into_iter().for_each(|row| flow.add_row(row));
+        assert!(flow.solve().is_ok());
+        assert!(flow.is_feasible());
+        assert!(flow.cost() < margin * apart, "{} and apart {apart}", flow.cost());
+    }
+}

@@ -4,7 +4,7 @@ mod fixtures;
 
 use fixtures::*;
 use quadrel::domain::Place;
-use quadrel::mesh::BoundaryTolerance;
+use quadrel::mesh::{unproven, BoundaryTolerance, HighOrderMesh, QuadMesh, TableCurve};
 use quadrel::numerics::Vector;
 use quadrel::options::Norm;
 use quadrel::smooth::{equal_spacing, Care, Optimiser};
@@ -182,4 +182,42 @@ fn smoothing_never_makes_the_worst_element_worse() {
         assert!(now >= worst.min(0.5), "{worst} -> {now}");
         worst = now;
     }
+}
+
+/// What the proof refuses is listed, and mended without a change elsewhere.
+#[test]
+fn refused_quads_are_mended_where_they_are() {
+    let n = 20;
+    let (b, mut m) = rectangle(1.0, 1.0, &even(n), &even(n));
+    let unproven_of =
+        |m: &QuadMesh, quads: &[u32]| unproven(m, quads.iter().copied(), &b, &TableCurve(&b), 5).unwrap();
+    let all: Vec<u32> = (0..m.quads.len() as u32).collect();
+    assert!(unproven_of(&m, &all).is_empty());
+    // The edge between the first two quads bulges through the second.
+    let between = m.edges.iter().position(|e| e.quads == [0, 1]).unwrap();
+    m.edges[between].bubbles = vec![Vector::new(1.2 / n as f64 * b.frame.scale.recip(), 0.0)];
+    let refused = unproven_of(&m, &all);
+    assert!(!refused.is_empty() && refused.iter().all(|q| [0, 1].contains(q)), "{refused:?}");
+    let tolerance = BoundaryTolerance { value: 1e-3, norm: Norm::L2, order: 5 };
+    assert!(HighOrderMesh::with_curve(&m, &b, &TableCurve(&b), &tolerance).is_err());
+
+    let before = m.clone();
+    let optimiser = Optimiser::new(&b, 5, None);
+    let (left, work) = optimiser.mend(&mut m, &refused, &unproven_of);
+    assert!(left.is_empty() && work > 0, "{left:?}");
+    assert!(HighOrderMesh::with_curve(&m, &b, &TableCurve(&b), &tolerance).is_ok());
+    for (q, quad) in m.quads.iter().enumerate().filter(|(q, _)| q % n > 9 || q / n > 9) {
+        for v in quad {
+            assert_eq!(m.vertices[*v as usize], before.vertices[*v as usize], "quad {q}");
+        }
+        for e in m.quad_edges[q] {
+            assert_eq!(m.edges[e as usize], before.edges[e as usize], "quad {q}");
+        }
+    }
+    // What cannot be mended is told, and left as it was.
+    let sound = m.clone();
+    let (left, _) =
+        optimiser.mend(&mut m, &[7], &|_, quads| quads.iter().copied().filter(|q| *q == 7).collect());
+    assert_eq!(left, [7]);
+    assert_eq!(m, sound);
 }

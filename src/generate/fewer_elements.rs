@@ -14,6 +14,8 @@ use crate::stages::Stages;
 const PASSES: usize = 2;
 /// ... which is not tried for a fast mesh, nor above so many quads: it takes as long as the first time and brings a percent.
 const MOST_AGAIN: usize = 1500;
+/// Quads above which a few elements that smoothing made worse are seen to before its result is judged.
+const MANY: usize = 10_000;
 
 /// `mesh`, which is valid, with as few elements as keep the scaled Jacobian at `floor` and the sizes within `limit`.
 pub(super) fn fewer_elements(
@@ -63,7 +65,13 @@ fn smoothed(
     }
     let mut smoother = mesh.clone();
     watch.run(stages, Stage::Smooth, |_| Ok(optimiser.optimise(&mut smoother, None, Care::Final)))?;
-    let after = optimiser.quality(&smoother);
+    let mut after = optimiser.quality(&smoother);
+    if smoother.quads.len() > MANY && after.min_scaled_jacobian < before.min_scaled_jacobian {
+        // A few elements may not decide for all.
+        watch.work += watch
+            .run(stages, Stage::Smooth, |_| Ok(optimiser.lift(&mut smoother, before.min_scaled_jacobian)))?;
+        after = optimiser.quality(&smoother);
+    }
     let too_large =
         |mesh: &QuadMesh| limits.sizes.is_some_and(|sizes| sizes.too_long(mesh, TOO_LARGE).contains(&true));
     if after.valid()

@@ -15,6 +15,9 @@ use crate::numerics::NONE;
 /// Weight of a spoke's deviation against an arc's: spokes only settle what the arcs leave open.
 const SPOKE_WEIGHT: f64 = 0.05;
 
+/// Chains of a loop above which its own total is left out if they imply it.
+const MANY_CHAINS: usize = 5000;
+
 /// The lengths of a layout.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Lengths {
@@ -88,19 +91,27 @@ impl LengthProgram {
         }
         variables.extend(spoke_variables);
         let mut loop_wanted = vec![0.0; boundary.loops.len()];
+        // Where a loop's many chains have that total anyway its equation would only join everything to everything.
+        let is_implied = |l: usize| {
+            let chains = &boundary.loops[l];
+            let total: u32 = chains.iter().map(|c| targets.chain_least[*c as usize]).sum();
+            chains.len() > MANY_CHAINS && total >= targets.loop_least[l]
+        };
+        let implied: Vec<bool> = (0..boundary.loops.len()).map(is_implied).collect();
         for (c, chain) in boundary.chains.iter().enumerate() {
             loop_wanted[chain.loop_index as usize] += chain_wanted[c];
+            let in_loop = End { equation: first_loop + chain.loop_index, sign: 1 };
             variables.push(Variable {
                 target: chain_wanted[c],
                 weight: 0.0,
                 lower: targets.chain_least[c] as i32,
                 ends: [
                     End { equation: first_chain + c as u32, sign: -1 },
-                    End { equation: first_loop + chain.loop_index, sign: 1 },
+                    if implied[chain.loop_index as usize] { End::FREE } else { in_loop },
                 ],
             });
         }
-        for (l, &wanted) in loop_wanted.iter().enumerate() {
+        for (l, &wanted) in loop_wanted.iter().enumerate().filter(|(l, _)| !implied[*l]) {
             let own = End { equation: first_loop + l as u32, sign: -1 };
             let lower = targets.loop_least[l] as i32;
             variables.push(Variable { target: wanted, weight: 0.0, lower, ends: [own, End::FREE] });

@@ -40,6 +40,8 @@ struct Builder<'a> {
     spokes: Vec<Vec<Spoke>>,
     /// Nodes along each loop.
     border: Vec<Vec<(LoopKey, u32)>>,
+    /// Loop of each chain and its place in it.
+    chain_position: Vec<(usize, usize)>,
 }
 
 impl Builder<'_> {
@@ -49,11 +51,6 @@ impl Builder<'_> {
         self.layout.nodes.len() as u32 - 1
     }
 
-    fn chain_position(&self, chain: u32) -> (usize, usize) {
-        let l = self.boundary.chains[chain as usize].loop_index as usize;
-        (l, self.boundary.loops[l].iter().position(|&c| c == chain).unwrap_or(0))
-    }
-
     fn border_node(&mut self, end: TraceEnd, point: Point) -> Result<u32> {
         let TraceEnd::Border { edge, share, place: place @ Place::Boundary(at), .. } = end else {
             return Err(Error::Layout {
@@ -61,7 +58,7 @@ impl Builder<'_> {
                 at: Some(point),
             });
         };
-        let (l, position) = self.chain_position(at.chain);
+        let (l, position) = self.chain_position[at.chain as usize];
         let node = self.node(point, NodeKind::Boundary, place);
         self.border[l].push(((position, at.s, edge, share), node));
         Ok(node)
@@ -78,11 +75,16 @@ pub fn build(
     corners: &[CornerFan],
     separatrices: &[Separatrix],
 ) -> Result<Traced> {
+    let mut chain_position = vec![(0, 0); boundary.chains.len()];
+    for (l, chains) in boundary.loops.iter().enumerate() {
+        chains.iter().enumerate().for_each(|(i, c)| chain_position[*c as usize] = (l, i));
+    }
     let mut b = Builder {
         boundary,
         layout: BlockLayout::default(),
         spokes: Vec::new(),
         border: vec![Vec::new(); boundary.loops.len()],
+        chain_position,
     };
     for s in singularities {
         b.node(s.point, NodeKind::Singularity(s.valence), Place::Interior);
@@ -90,7 +92,7 @@ pub fn build(
     let first_junction = b.layout.nodes.len() as u32;
     for (j, junction) in boundary.junctions.iter().enumerate() {
         let node = b.node(junction.point, NodeKind::Junction, Place::Junction(j as u32));
-        let (l, position) = b.chain_position(junction.chain_out);
+        let (l, position) = b.chain_position[junction.chain_out as usize];
         b.border[l].push(((position, -1.0, 0, 0.0), node));
     }
     // End nodes of the separatrices.

@@ -2,8 +2,8 @@
 //! verified.
 
 use super::{
-    BoundaryError, BoundaryTolerance, DomainCurve, ExactCurve, Geometry, HighOrderMesh, JacobianProof,
-    MeshEdge, QuadMesh, Quality, Verdict,
+    BoundaryError, BoundaryTolerance, DomainCurve, Edge, ExactCurve, Geometry, HighOrderMesh, JacobianProof,
+    MeshEdge, QuadMesh, Quality, Verdict, Vertex,
 };
 use crate::domain::{Boundary, BoundaryPoint, Domain, Frame, Place};
 use crate::error::{Error, Result};
@@ -167,17 +167,19 @@ impl HighOrderMesh {
 }
 
 fn exact_vertices(mesh: &QuadMesh, boundary: &Boundary, curve: &dyn ExactCurve) -> Result<Vec<Point>> {
-    mesh.vertices
-        .iter()
-        .map(|v| match v.place {
-            Place::Interior => Ok(boundary.frame.to_caller(v.point)),
-            Place::Boundary(p) => curve.point(p),
-            Place::Junction(j) => {
-                let chain = boundary.junctions[j as usize].chain_out;
-                curve.point(BoundaryPoint { chain, s: 0.0 })
-            }
-        })
-        .collect()
+    mesh.vertices.iter().map(|v| exact_vertex(v, boundary, curve)).collect()
+}
+
+/// A vertex in the caller's frame.
+pub(super) fn exact_vertex(vertex: &Vertex, boundary: &Boundary, curve: &dyn ExactCurve) -> Result<Point> {
+    match vertex.place {
+        Place::Interior => Ok(boundary.frame.to_caller(vertex.point)),
+        Place::Boundary(p) => curve.point(p),
+        Place::Junction(j) => {
+            let chain = boundary.junctions[j as usize].chain_out;
+            curve.point(BoundaryPoint { chain, s: 0.0 })
+        }
+    }
 }
 
 /// Nodes of all edges in the caller's frame, ends exactly the vertices.
@@ -189,26 +191,37 @@ fn exact_edge_nodes(
     vertices: &[Point],
 ) -> Result<Vec<Point>> {
     let len = geometry.edge_len();
-    let mut nodes = Vec::with_capacity(len * mesh.edges.len());
-    for edge in &mesh.edges {
-        let [a, b] = edge.vertices.map(|v| vertices[v as usize]);
-        nodes.push(a);
-        for i in 1..len - 1 {
-            let share = 0.5 * (1.0 + geometry.reference[i]);
-            nodes.push(match edge.span {
-                Some(span) => {
-                    let s = boundary.chains[span.chain as usize]
-                        .wrap(span.start + share * (span.end - span.start));
-                    curve.point(BoundaryPoint { chain: span.chain, s })?
-                }
-                None => {
-                    a + (b - a) * share + vector_to_caller(&boundary.frame, geometry.bubble_offset(edge, i))
-                }
-            });
-        }
-        nodes.push(b);
+    let mut nodes = vec![Point::origin(); len * mesh.edges.len()];
+    for (edge, out) in mesh.edges.iter().zip(nodes.chunks_exact_mut(len)) {
+        let ends = edge.vertices.map(|v| vertices[v as usize]);
+        exact_nodes(edge, ends, boundary, curve, geometry, out)?;
     }
     Ok(nodes)
+}
+
+/// Nodes of one edge between `ends`, written to `out`.
+pub(super) fn exact_nodes(
+    edge: &Edge,
+    ends: [Point; 2],
+    boundary: &Boundary,
+    curve: &dyn ExactCurve,
+    geometry: &Geometry,
+    out: &mut [Point],
+) -> Result<()> {
+    let ([a, b], last) = (ends, out.len() - 1);
+    (out[0], out[last]) = (a, b);
+    for (i, node) in out.iter_mut().enumerate().take(last).skip(1) {
+        let share = 0.5 * (1.0 + geometry.reference[i]);
+        *node = match edge.span {
+            Some(span) => {
+                let s =
+                    boundary.chains[span.chain as usize].wrap(span.start + share * (span.end - span.start));
+                curve.point(BoundaryPoint { chain: span.chain, s })?
+            }
+            None => a + (b - a) * share + vector_to_caller(&boundary.frame, geometry.bubble_offset(edge, i)),
+        };
+    }
+    Ok(())
 }
 
 /// The edges of the finished mesh; boundary edges measured against the exact curve.

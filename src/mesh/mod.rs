@@ -30,6 +30,7 @@ mod geometry;
 mod high_order_mesh;
 mod measures;
 mod quad_mesh;
+mod unproven;
 
 pub use bernstein_proof::{JacobianProof, Verdict};
 pub use boundary_error::{BoundaryError, BoundaryTolerance};
@@ -41,6 +42,7 @@ pub use exact_curve::{CallerPlace, DomainCurve, ExactCurve, TableCurve};
 pub use geometry::Geometry;
 pub use measures::{ElementMeasures, Quality};
 pub use quad_mesh::{Edge, QuadMesh, Vertex};
+pub use unproven::unproven;
 
 use crate::numerics::Point;
 

@@ -3,7 +3,6 @@
 use super::patch::Patch;
 use crate::mesh::QuadMesh;
 use crate::numerics::NONE;
-use std::collections::BTreeSet;
 
 /// A mesh under coarsening. Quads, edges and vertices keep their numbers; what is gone stays in the
 /// arrays, where nothing living refers to it, until [`LiveMesh::compact`].
@@ -155,25 +154,26 @@ pub(super) fn rings_around<'a>(
     star: impl Fn(u32) -> &'a [u32],
     corners: impl Fn(u32) -> [u32; 4],
 ) -> Vec<(u32, usize)> {
-    let mut seen: BTreeSet<u32> = BTreeSet::new();
-    let mut done: BTreeSet<u32> = BTreeSet::new();
+    // Sorted lists: most neighbourhoods are some dozens of quads.
+    let (mut seen, mut done): (Vec<u32>, Vec<u32>) = (Vec::new(), Vec::new());
     let mut front = seeds.to_vec();
     let mut list = Vec::new();
     for ring in 0..=rings {
-        let mut next = Vec::new();
-        for v in front {
-            if !done.insert(v) {
-                continue;
-            }
-            for q in star(v) {
-                if seen.insert(*q) {
-                    list.push((*q, ring));
-                    next.extend(corners(*q));
-                }
-            }
-        }
-        front = next;
+        let own = new_among(front, &mut done);
+        let quads = new_among(own.into_iter().flat_map(&star).copied().collect(), &mut seen);
+        front = quads.iter().flat_map(|q| corners(*q)).collect();
+        list.extend(quads.into_iter().map(|q| (q, ring)));
     }
     list.sort_unstable();
     list
+}
+
+/// Those of `found` that are not `known`, ascending; they become so.
+fn new_among(mut found: Vec<u32>, known: &mut Vec<u32>) -> Vec<u32> {
+    found.sort_unstable();
+    found.dedup();
+    found.retain(|x| known.binary_search(x).is_err());
+    known.extend(&found);
+    known.sort_unstable();
+    found
 }

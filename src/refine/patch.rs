@@ -8,7 +8,7 @@ use crate::numerics::{Vector, NONE};
 use std::collections::HashMap;
 
 /// The quads around a merge, after it. Its outermost ring is there to hold the others.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Patch {
     pub mesh: QuadMesh,
     /// Numbers in the whole mesh, which no merge changes: of edges that become one the least stays.
@@ -92,6 +92,24 @@ impl Patch {
             }
         }
         Some(patch)
+    }
+
+    /// Takes over what was moved in `inner`, a patch of the same merge with fewer rings: its quads come in the same
+    /// order here, so that edges between them have the same directions.
+    pub fn take_over(&mut self, inner: &Patch) {
+        let place = |list: &[u32]| -> HashMap<u32, usize> { list.iter().copied().zip(0..).collect() };
+        let (vertices, edges) = (place(&self.vertices), place(&self.edges));
+        for (v, global) in inner.vertices.iter().enumerate() {
+            if let Some(own) = vertices.get(global) {
+                self.mesh.vertices[*own] = inner.mesh.vertices[v];
+            }
+        }
+        for (e, global) in inner.edges.iter().enumerate().filter(|(e, _)| !inner.rim[*e]) {
+            if let Some(own) = edges.get(global) {
+                self.mesh.edges[*own].span = inner.mesh.edges[e].span;
+                self.mesh.edges[*own].bubbles.clone_from(&inner.mesh.edges[e].bubbles);
+            }
+        }
     }
 
     /// The quads up to ring `rings`.

@@ -104,11 +104,18 @@ pub(super) fn settle<'a>(
     if let Some(error) = optimiser.boundary_error() {
         seeds.extend(respace(optimiser.boundary(), error, &mut merge).ok_or_else(Vec::new)?);
     }
-    let attempts = reach.attempts();
-    let widest = attempts.iter().map(|a| a.0).max().unwrap_or(0);
-    let mut patch = Patch::new(optimiser.boundary(), &merge, &seeds, widest + 1).ok_or_else(Vec::new)?;
+    let around = |rings: usize| Patch::new(optimiser.boundary(), &merge, &seeds, rings).ok_or_else(Vec::new);
+    let mut wide = 0;
+    let mut patch = Patch::default();
     let mut refused = Vec::new();
-    for (rings, care) in attempts.iter().copied() {
+    for (rings, care) in reach.attempts().iter().copied() {
+        // Most trials are settled by the first attempt: the patch is as wide as each needs.
+        if wide < rings + 1 {
+            wide = rings + 1;
+            let mut wider = around(wide)?;
+            wider.take_over(&patch);
+            patch = wider;
+        }
         let active = patch.within(rings);
         let limits = limits_at(rings + 1);
         // Where the mesh is below the floor already the local limit says little about what would be good.

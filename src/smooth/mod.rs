@@ -21,6 +21,7 @@ mod kernel;
 mod laplacian;
 mod lift;
 mod local;
+mod mend;
 mod minimiser;
 mod optimiser;
 mod problem;

@@ -3,6 +3,7 @@
 use super::kernel::Measure;
 use super::lift::lift;
 use super::local::{few_of_many, untangle_locally, Elements, Saved};
+use super::mend::mend;
 use super::minimiser::{Lbfgs, Limits};
 use super::problem::Problem;
 use super::quality::{self, ElementQuality, Quality};
@@ -294,7 +295,12 @@ impl<'a> Optimiser<'a> {
         let mut quality = self.quality_of(mesh, active);
         if state.valid && !quality.valid() {
             // Inverted between the samples: denser ones.
-            state = self.run(&self.dense, mesh, active, care, aim, &mut work);
+            let inverted = self.inverted_among(mesh, own);
+            if active.is_none() && few_of_many(inverted.len(), own.len()) {
+                mend(self, mesh, &inverted, &|mesh, quads| self.inverted_among(mesh, quads), care, &mut work);
+            } else {
+                state = self.run(&self.dense, mesh, active, care, aim, &mut work);
+            }
             quality = self.quality_of(mesh, active);
         }
         if !quality.valid() {
@@ -324,6 +330,29 @@ impl<'a> Optimiser<'a> {
     /// undone. The work spent.
     pub fn lift(&self, mesh: &mut QuadMesh, floor: f64) -> u64 {
         lift(self, mesh, floor, Care::Final, MOST_WORK)
+    }
+
+    /// Optimises around the quads `refused` with denser samples, each group with some rings by itself, until `refuses`
+    /// lists none of them any more; what does not help is undone. The quads that are left, and the work spent.
+    pub fn mend(
+        &self,
+        mesh: &mut QuadMesh,
+        refused: &[u32],
+        refuses: &dyn Fn(&QuadMesh, &[u32]) -> Vec<u32>,
+    ) -> (Vec<u32>, u64) {
+        let mut work = 0;
+        let left = mend(self, mesh, refused, refuses, Care::Final, &mut work);
+        (left, work)
+    }
+
+    /// Those of `quads` that have an inverted sample.
+    fn inverted_among(&self, mesh: &QuadMesh, quads: &[u32]) -> Vec<u32> {
+        quads.iter().copied().filter(|q| self.element_quality(mesh, *q).jacobian_ratio <= 0.0).collect()
+    }
+
+    /// The quads `active` of `mesh` untangled if need be, and improved, with dense samples.
+    pub(super) fn run_dense(&self, mesh: &mut QuadMesh, active: &[u32], care: Care, work: &mut u64) {
+        self.run(&self.dense, mesh, Some(active), care, None, work);
     }
 
     /// `mesh` as a function of what may move.

@@ -18,7 +18,8 @@ pub(super) const TOO_DEAR: i64 = i64::MAX;
 pub(super) type Walk = Result<(i64, Vec<Step>), Vec<u32>>;
 
 impl BidirectedFlow {
-    /// Cheapest walk from `start` to a state that `is_goal` accepts; marginal costs below 0 count as 0.
+    /// Cheapest walk from `start` to a state that `is_goal` accepts; marginal costs below 0 count as 0, and where
+    /// labels are known those below what these allow for.
     /// `banned` variables are not lowered, and rows that have nothing to spare at a high price
     /// only (they are satisfied anew afterwards). A walk that costs `too_dear` or more is none: it comes as
     /// [`TOO_DEAR`] without steps. `Err`: the states that were reached.
@@ -87,10 +88,16 @@ impl BidirectedFlow {
         result
     }
 
+    /// By how much the label of `to` is above that of `from`: what a step between them has to cost at least.
+    pub(super) fn fall(&self, from: u32, to: u32) -> i64 {
+        self.labels[to as usize] - self.labels[from as usize]
+    }
+
     /// Calls `f(cost, step, next state)` for every way to leave `state` that is allowed.
-    fn allowed(&self, state: u32, banned: &[u32], mut f: impl FnMut(i64, Step, u32)) {
+    pub(super) fn allowed(&self, state: u32, banned: &[u32], mut f: impl FnMut(i64, Step, u32)) {
         self.transitions(state, |a, step, t| {
-            let mut cost = self.marginal(a, step).max(0) + 1;
+            let fall = if self.by_labels { self.fall(state, t) } else { 0 };
+            let mut cost = (self.marginal(a, step) - fall).max(0) + 1;
             if step < 0 {
                 if self.values[a] <= self.variables[a].lower || banned.contains(&(a as u32)) {
                     return;

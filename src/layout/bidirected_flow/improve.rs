@@ -1,15 +1,19 @@
 //! Closed walks of negative cost.
 
+use super::prices::COARSE;
 use super::{BidirectedFlow, Step};
 use crate::numerics::NONE;
 use std::collections::BTreeSet;
 
 /// Refused walks after which a descent bans more at a time.
 const PATIENCE: usize = 8;
+/// Most label changes between two looks for cycles. In a large program few cycles are left after the first sweeps, and
+/// labels go round each of them until somebody looks.
+const SCAN_AFTER: usize = 1024;
 
 impl BidirectedFlow {
     /// Whether lowering `variable` by one is allowed.
-    fn can_lower(&self, variable: usize) -> bool {
+    pub(super) fn can_lower(&self, variable: usize) -> bool {
         self.values[variable] > self.variables[variable].lower
             && self.rows_of[variable]
                 .iter()
@@ -44,12 +48,17 @@ impl BidirectedFlow {
     /// Adds closed walks of negative cost until none is left (or a step limit): label correction over the
     /// double cover from the states in the queue on, with a look for cycles in the parent links now and then.
     pub(super) fn improve(&mut self) {
+        // In a large program cycles that gain less than that for each of their steps are left: it takes most of the
+        // time to find them, and they are worth a few parts in 10,000 of the cost.
+        let slack = if self.by_labels { COARSE } else { 0 };
         let states = self.labels.len();
         let mut parent = vec![(NONE, NONE, 0i32); states];
         let mut banned: BTreeSet<(u32, Step)> = BTreeSet::new();
         let scan_after = states / 8 + 32;
-        let mut changes = 0;
-        let mut left = 4_000 * (self.variables.len() as u64 + 100);
+        // Every cycle of parent links runs through one that is new since the last look.
+        let mut changed: Vec<u32> = Vec::new();
+        let mut cycles = Cycles::new(states);
+        let mut left = if self.by_labels { 20 } else { 4_000 } * (self.variables.len() as u64 + 100);
         let mut leaving = Vec::new();
         let mut taken = BTreeSet::new();
         let mut refusals = 0;
@@ -63,7 +72,7 @@ impl BidirectedFlow {
             }
             for &(a, step, t) in &leaving {
                 let label = self.labels[s as usize] + self.marginal(a, step);
-                if label >= self.labels[t as usize]
+                if label + slack >= self.labels[t as usize]
                     || (step < 0 && !self.can_lower(a))
                     || banned.contains(&(s, (a as u32, step)))
                 {
@@ -71,18 +80,25 @@ impl BidirectedFlow {
                 }
                 self.labels[t as usize] = label;
                 parent[t as usize] = (s, a as u32, step);
-                changes += 1;
+                changed.push(t);
                 if !self.queued[t as usize] {
                     self.queued[t as usize] = true;
                     self.queue.push_back(t);
                 }
             }
-            if changes == 0 || (changes < scan_after && !self.queue.is_empty()) {
+            let enough = scan_after.min(SCAN_AFTER.max(cycles.visited));
+            if changed.is_empty() || (changed.len() < enough && !self.queue.is_empty()) {
                 continue;
             }
-            changes = 0;
+            let found = if scan_after <= SCAN_AFTER {
+                cycles.find(&parent, 0..states as u32)
+            } else {
+                changed.sort_unstable();
+                cycles.find(&parent, changed.iter().copied())
+            };
+            changed.clear();
             taken.clear();
-            for walk in cycles(&parent) {
+            for walk in found {
                 let steps: Vec<Step> = walk.iter().map(|w| w.1).collect();
                 // The mirror image of a walk just taken is refused for good reason: no cause to ban.
                 let mirrored = steps.iter().any(|s| taken.contains(&s.0));
@@ -120,29 +136,51 @@ impl BidirectedFlow {
     }
 }
 
-/// The disjoint cycles of the parent links, each as its steps with the states that they leave.
-fn cycles(parent: &[(u32, u32, i32)]) -> Vec<Vec<(u32, Step)>> {
-    let mut colour = vec![NONE; parent.len()];
-    let mut found = Vec::new();
-    for start in 0..parent.len() {
-        let mut s = start as u32;
-        while s != NONE && colour[s as usize] == NONE {
-            colour[s as usize] = start as u32;
-            s = parent[s as usize].0;
-        }
-        if s != NONE && colour[s as usize] == start as u32 {
-            let mut steps = Vec::new();
-            let mut t = s;
-            loop {
-                let (p, a, step) = parent[t as usize];
-                steps.push((p, (a, step)));
-                t = p;
-                if t == s {
-                    break;
-                }
-            }
-            found.push(steps);
-        }
+/// Looks for cycles of parent links.
+struct Cycles {
+    /// The walk that came by each state last; walks are numbered through all looks.
+    walk: Vec<u64>,
+    walks: u64,
+    /// States passed in the last look.
+    visited: usize,
+}
+
+impl Cycles {
+    fn new(states: usize) -> Self {
+        Cycles { walk: vec![0; states], walks: 0, visited: 0 }
     }
-    found
+
+    /// The disjoint cycles that the links lead to from `starts`, each as its steps with the states that they leave.
+    fn find(
+        &mut self,
+        parent: &[(u32, u32, i32)],
+        starts: impl Iterator<Item = u32>,
+    ) -> Vec<Vec<(u32, Step)>> {
+        let mut found = Vec::new();
+        let before = self.walks;
+        self.visited = 0;
+        for start in starts {
+            self.walks += 1;
+            let mut s = start;
+            while s != NONE && self.walk[s as usize] <= before {
+                self.walk[s as usize] = self.walks;
+                self.visited += 1;
+                s = parent[s as usize].0;
+            }
+            if s != NONE && self.walk[s as usize] == self.walks {
+                let mut steps = Vec::new();
+                let mut t = s;
+                loop {
+                    let (p, a, step) = parent[t as usize];
+                    steps.push((p, (a, step)));
+                    t = p;
+                    if t == s {
+                        break;
+                    }
+                }
+                found.push(steps);
+            }
+        }
+        found
+    }
 }

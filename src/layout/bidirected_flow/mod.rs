@@ -6,13 +6,16 @@
 //! unit that it has too much); equations' free ends share one state, the ground. Imbalances are removed along
 //! cheapest walks, then walks of negative cost are added until there is none. From the first
 //! balanced point on the point stays feasible. A walk that uses a variable twice has its true (convex) cost
-//! checked before it is taken; where that check fails the solution may miss the optimum, by little.
+//! checked before it is taken; where that check fails the solution may miss the optimum, by little. Large programs
+//! are balanced by prices first, which leaves few walks to be searched.
 //!
 //! Campen, Bommes, Kobbelt: Quantized global parametrization (2015). Heistermann, Warnett, Bommes:
 //! Min-deviation-flow in bi-directed graphs for T-mesh quantization (2023).
 
 mod balance;
 mod improve;
+mod meet;
+mod prices;
 mod rows;
 
 use crate::numerics::NONE;
@@ -23,6 +26,9 @@ const COST_UNITS: f64 = 1e6;
 /// Share of a quadratic term in the cost: spreads a deviation over several variables that the
 /// absolute value alone would leave to chance.
 const SPREAD: f64 = 1e-3;
+/// States above which a program is settled by prices first: searches alone take quadratic time.
+const LARGE: usize = 8192;
+
 /// One occurrence of a variable: the equation (`NONE`: a free end) and its coefficient, +1 or −1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct End {
@@ -81,6 +87,10 @@ pub struct BidirectedFlow {
     robbed: Vec<i64>,
     rows_of: Vec<Vec<u32>>,
     scratch: Scratch,
+    /// The same for the search from the other end.
+    opposite: Scratch,
+    /// Whether the labels tell the searches what steps are worth.
+    by_labels: bool,
     /// Labels of the states that the descent left behind: no allowed step lowers one, but for steps
     /// out of the states in the queue.
     labels: Vec<i64>,
@@ -96,6 +106,30 @@ struct Scratch {
     distance: Vec<i64>,
     parent: Vec<(u32, u32, i32)>,
     done: Vec<bool>,
+}
+
+impl Scratch {
+    fn new(states: usize) -> Self {
+        Scratch {
+            round: 0,
+            stamp: vec![0; states],
+            distance: vec![0; states],
+            parent: vec![(NONE, NONE, 0); states],
+            done: vec![false; states],
+        }
+    }
+
+    fn is_reached(&self, state: u32) -> bool {
+        self.stamp[state as usize] == self.round
+    }
+
+    fn reach(&mut self, state: u32, distance: i64, parent: (u32, u32, i32)) {
+        let s = state as usize;
+        self.stamp[s] = self.round;
+        self.distance[s] = distance;
+        self.parent[s] = parent;
+        self.done[s] = false;
+    }
 }
 
 impl BidirectedFlow {
@@ -127,13 +161,6 @@ impl BidirectedFlow {
             }
         }
         let states = 2 * equations + 1;
-        let scratch = Scratch {
-            round: 0,
-            stamp: vec![0; states],
-            distance: vec![0; states],
-            parent: vec![(NONE, NONE, 0); states],
-            done: vec![false; states],
-        };
         let rows_of = vec![Vec::new(); variables.len()];
         let mut flow = BidirectedFlow {
             equations,
@@ -147,7 +174,9 @@ impl BidirectedFlow {
             row_sums: Vec::new(),
             robbed: Vec::new(),
             rows_of,
-            scratch,
+            scratch: Scratch::new(states),
+            opposite: Scratch::new(states),
+            by_labels: false,
             labels: vec![0; states],
             queue: (0..states as u32).collect(),
             queued: vec![true; states],
@@ -187,7 +216,8 @@ impl BidirectedFlow {
 
     /// Adds a general row; the next [`solve`](Self::solve) goes on from the current point.
     pub fn add_row(&mut self, row: Row) {
-        for r in 0..self.rows.len() {
+        let sharing = row.variables.first().map_or(Vec::new(), |a| self.rows_of[*a as usize].clone());
+        for r in sharing.into_iter().map(|r| r as usize) {
             let old = &mut self.rows[r];
             let contains = row.variables.iter().all(|a| old.variables.contains(a));
             if contains && row.at_least >= old.at_least {
@@ -207,9 +237,16 @@ impl BidirectedFlow {
 
     /// Balances the equations, satisfies the rows, then lowers the cost.
     pub fn solve(&mut self) -> Result<(), Obstruction> {
+        self.by_labels = self.labels.len() > LARGE;
+        if self.by_labels {
+            self.settle_by_prices();
+        }
         self.balance()?;
         self.improve();
         if self.rows.iter().zip(&self.row_sums).any(|(r, &s)| s < r.at_least) {
+            if self.by_labels {
+                self.raise_rows();
+            }
             self.satisfy_rows()?;
             self.improve();
         }

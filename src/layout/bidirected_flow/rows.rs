@@ -1,7 +1,15 @@
 //! General rows: satisfied one after the other, then chosen better.
 
 use super::balance::{Walk, TOO_DEAR};
-use super::{BidirectedFlow, Obstruction, Step};
+use super::{BidirectedFlow, Obstruction, Step, COST_UNITS};
+
+/// Costs up to which walks are looked for, in turn until there is one.
+const REACHES: [i64; 3] = [4 * COST_UNITS as i64, 16 * COST_UNITS as i64, TOO_DEAR];
+
+/// Rows times states up to which every row of a large program gets the cheapest walk there is, by searches.
+const AFFORDABLE: usize = 3_000_000;
+/// Rows raised together else.
+const GROUP: usize = 32;
 
 /// Most work of [`BidirectedFlow::polish`]: trials times variables.
 const POLISH_WORK: usize = 30_000;
@@ -11,7 +19,10 @@ impl BidirectedFlow {
     fn raising(&mut self, a: u32, too_dear: i64) -> Walk {
         let [tail, head] = self.variables[a as usize].ends;
         let (start, goal) = (self.state(head, head.sign), self.state(tail, -tail.sign));
-        let own = self.marginal(a as usize, 1);
+        let mut own = self.marginal(a as usize, 1);
+        if self.by_labels {
+            own = (own - self.fall(goal, start)).max(0);
+        }
         if start == goal {
             return Ok((own, vec![(a, 1)]));
         }
@@ -19,7 +30,10 @@ impl BidirectedFlow {
         let mut banned = vec![a];
         loop {
             let left = too_dear.saturating_sub(own);
-            let (cost, mut steps) = self.search(start, |_, s| s == goal, &banned, left)?;
+            let (cost, mut steps) = match self.by_labels {
+                true => self.meet(start, goal, &banned, left)?,
+                false => self.search(start, |_, s| s == goal, &banned, left)?,
+            };
             if cost == TOO_DEAR {
                 return Ok((TOO_DEAR, Vec::new()));
             }
@@ -35,11 +49,46 @@ impl BidirectedFlow {
 
     /// Applies a walk and makes the rows that it robs dearer.
     fn apply_counting(&mut self, steps: &[Step]) {
-        let before = self.row_sums.clone();
+        let mut concerned: Vec<u32> =
+            steps.iter().flat_map(|s| &self.rows_of[s.0 as usize]).copied().collect();
+        concerned.sort_unstable();
+        concerned.dedup();
+        let before: Vec<i32> = concerned.iter().map(|q| self.row_sums[*q as usize]).collect();
         self.apply(steps);
-        for (q, &sum_before) in before.iter().enumerate() {
+        for (q, sum_before) in concerned.iter().map(|q| *q as usize).zip(before) {
             if self.row_sums[q] < sum_before && self.row_sums[q] < self.rows[q].at_least {
                 self.robbed[q] += 1;
+            }
+        }
+    }
+
+    /// Raises the short rows of a large program, unless they are few: in each the variable that the labels tell to be
+    /// cheapest, and what that unbalances is settled for many rows together. What it leaves short is left to searches.
+    pub(super) fn raise_rows(&mut self) {
+        let is_short = |flow: &Self, r: usize| flow.row_sums[r] < flow.rows[r].at_least;
+        let short: Vec<usize> = (0..self.rows.len()).filter(|&r| is_short(self, r)).collect();
+        if short.len() * self.labels.len() <= AFFORDABLE {
+            return;
+        }
+        // Rows of one group are spread over all: they hardly meet, and later groups know what the earlier ones cost.
+        let groups = short.len().div_ceil(GROUP);
+        for group in 0..groups {
+            let start = self.point();
+            for &r in short.iter().skip(group).step_by(groups) {
+                // No closed walk that raises a variable costs less.
+                let least = |a: &&u32| {
+                    let [tail, head] = self.variables[**a as usize].ends;
+                    let [from, to] = [self.state(tail, -tail.sign), self.state(head, head.sign)];
+                    self.marginal(**a as usize, 1) - self.fall(from, to)
+                };
+                let cheapest = self.rows[r].variables.iter().min_by_key(least).copied();
+                if let Some(a) = cheapest.filter(|_| is_short(self, r)) {
+                    self.apply(&[(a, 1)]);
+                }
+            }
+            self.settle_by_prices();
+            if self.balance().is_err() {
+                self.restore(&start);
             }
         }
     }
@@ -52,17 +101,20 @@ impl BidirectedFlow {
     pub(super) fn satisfy_rows(&mut self) -> Result<(), Obstruction> {
         let mut left = 200 + 20 * self.rows.len();
         while let Some(r) = self.short_row() {
+            // Near walks first: the search for one of a variable that has only dear ones goes through everything.
             let mut best: Option<(i64, Vec<Step>)> = None;
             let mut seen = Vec::new();
-            for a in self.rows[r].variables.clone() {
-                let known = best.as_ref().map_or(TOO_DEAR, |b| b.0);
-                match self.raising(a, known) {
-                    Err(states) => seen.extend(states),
-                    Ok(walk) => {
-                        if best.as_ref().is_none_or(|b| walk.0 < b.0) {
-                            best = Some(walk);
-                        }
+            for limit in REACHES {
+                for a in self.rows[r].variables.clone() {
+                    let known = best.as_ref().map_or(limit, |b| b.0);
+                    match self.raising(a, known) {
+                        Err(states) if limit == TOO_DEAR => seen.extend(states),
+                        Ok(walk) if walk.0 < known => best = Some(walk),
+                        _ => {}
                     }
+                }
+                if best.is_some() {
+                    break;
                 }
             }
             left -= 1;
