@@ -8,6 +8,7 @@ import matplotlib
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plt
+import matplotlib.ticker
 
 matplotlib.rcParams.update({"svg.hashsalt": "quadrel", "svg.fonttype": "none", "font.size": 9})
 
@@ -58,6 +59,8 @@ def main():
                             label="quadrel" if tool == "quadrel" else "Gmsh 4.15.2")
         axis.set_title(domain, fontsize=9)
         axis.set_ylim(1e-10, 1e-1)
+        # Labels between powers of ten would lie on each other.
+        axis.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
         axis.grid(True, linewidth=0.3)
     for axis in axes.flat[len(rows) :]:
         axis.remove()
