@@ -133,6 +133,42 @@ fn patches_of_any_size_leave_the_same_mesh() {
 }
 
 #[test]
+fn a_wider_patch_takes_over_what_moved_in_a_narrower_one() {
+    let (boundary, mesh) = grid(9, 7);
+    let live = LiveMesh::new(mesh, 4);
+    let quad = live.mesh.quads[31];
+    let merge =
+        Merge::new(&boundary, &live, &[([quad[0], quad[2]], false)], &[31], &[1; 4]).expect("a merge");
+    let patch = |rings| Patch::new(&boundary, &merge, &merge.touched, rings).expect("a patch");
+    let mut narrow = patch(1);
+    let held: Vec<u32> = (0..narrow.edges.len())
+        .filter(|e| narrow.rim[*e])
+        .flat_map(|e| narrow.mesh.edges[e].vertices)
+        .collect();
+    let mut moved = 0;
+    for v in (0..narrow.vertices.len()).filter(|v| !held.contains(&(*v as u32))) {
+        narrow.mesh.vertices[v].point += Vector::new(0.01, 0.02) * (v as f64).cos();
+        moved += 1;
+    }
+    for (e, edge) in narrow.mesh.edges.iter_mut().enumerate().filter(|(e, _)| !narrow.rim[*e]) {
+        edge.bubbles = vec![Vector::new(0.03, e as f64); 2];
+    }
+    assert!(moved > 2);
+    // In the whole mesh it is the same, whichever of the two brings it there.
+    let spliced = |patch: &Patch| {
+        let mut whole = live.clone();
+        whole.splice(patch, merge.clone().into_removal());
+        normal(whole.compact())
+    };
+    for rings in 2..4 {
+        let mut wide = patch(rings);
+        wide.take_over(&narrow);
+        assert_eq!(spliced(&wide), spliced(&narrow), "{rings} rings");
+        assert_ne!(spliced(&wide), spliced(&patch(rings)));
+    }
+}
+
+#[test]
 fn changes_one_after_another_leave_a_sound_mesh() {
     let (boundary, mesh) = grid(6, 6);
     let mut live = LiveMesh::new(mesh, 4);
