@@ -1,11 +1,12 @@
 //! Numerical tools that know nothing of meshes: points, Gauss-Lobatto nodes, quadrature,
-//! interpolation, Bernstein forms, transfinite maps, the sparse solver and every named tolerance.
+//! interpolation, Bernstein forms, transfinite maps, degrees of solutions, the sparse solver and every named tolerance.
 
 pub mod bernstein;
 pub mod gauss_lobatto;
 pub mod interpolation;
 pub mod modal;
 pub mod quadrature;
+pub mod solution_degrees;
 pub mod sparse;
 pub mod tolerances;
 pub mod transfinite;

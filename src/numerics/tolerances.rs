@@ -247,10 +247,6 @@ pub const LEAST_WAVE_ERROR: f64 = 1e-10;
 /// edges are a thousand times as long.
 pub const ON_BREAK: f64 = 1e-10;
 
-/// Degrees of solutions that elements are to follow well, as shares of the elements' order: the order itself, and lower
-/// ones, which see modes of the elements' maps that their own degree does not contain.
-pub const SOLUTION_DEGREES: [f64; 3] = [1.0, 0.7, 0.4];
-
 /// Share by which two divisions may differ in worth and still be made together: what is symmetric only to rounding,
 /// or to what smoothing leaves, must be divided alike.
 pub const EQUAL_WORTH: f64 = 1e-3;

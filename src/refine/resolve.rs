@@ -24,6 +24,8 @@ const MOST_QUADS: usize = 50_000;
 /// What steps must bring: the error falls with the number of elements as it does in even division at fifth order.
 /// Edges get the third, whose curvature is not smooth inside: dividing them for that would have no end.
 const LEAST_ORDER: f64 = 5.0;
+/// Least share of an error that steps are said to leave: less is rounding.
+const LEAST_LEFT: f64 = 1e-12;
 
 struct Chord {
     rungs: Vec<u32>,
@@ -243,9 +245,6 @@ fn order(before: &Errors, after: &Errors, growth: f64) -> f64 {
     let fall = |i: usize| (before[i] / after[i].max(LEAST_LEFT * before[i])).ln();
     (0..before.len()).map(fall).sum::<f64>() / before.len() as f64 / growth.ln()
 }
-
-/// Least share of an error that steps are said to leave.
-const LEAST_LEFT: f64 = 1e-12;
 
 #[cfg(test)]
 mod tests {

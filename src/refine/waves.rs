@@ -7,7 +7,7 @@
 //! Graf's theorem the sum of the products of J_n(kr) cos nφ and J_n(kr) sin nφ at x and y, polar coordinates round any
 //! point. So the mean over the directions is a sum over n, the same however the line is turned or moved.
 
-use crate::numerics::tolerances::SOLUTION_DEGREES;
+use crate::numerics::solution_degrees::{solution_degrees, PerDegree, DEGREES};
 use crate::numerics::{legendre, GaussLegendre, Point, Vector};
 
 /// Quadrature points beyond the order's own: a wave along a line is no polynomial.
@@ -18,7 +18,7 @@ const MORE_WAVES: usize = 4;
 const TERMS: usize = 8;
 
 /// Mean squares for each of the degrees.
-pub(super) type Errors = [f64; SOLUTION_DEGREES.len()];
+pub(super) type Errors = PerDegree;
 
 /// Tables for elements of one order and waves of one length.
 #[derive(Debug)]
@@ -28,7 +28,7 @@ pub(super) struct Waves {
     wave_number: f64,
     /// Orthonormal Legendre polynomials at the nodes, times the weights' square roots: `[degree][node]`.
     polynomials: Vec<Vec<f64>>,
-    degrees: [usize; SOLUTION_DEGREES.len()],
+    degrees: [usize; DEGREES],
 }
 
 impl Waves {
@@ -40,7 +40,7 @@ impl Waves {
         };
         Waves {
             polynomials: (0..=order).map(polynomial).collect(),
-            degrees: SOLUTION_DEGREES.map(|share| ((share * order as f64).round() as usize).max(1)),
+            degrees: solution_degrees(order),
             wave_number,
             rule,
         }

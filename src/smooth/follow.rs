@@ -69,8 +69,8 @@ impl Optimiser<'_> {
             chain.breaks.iter().chain(seam.iter().flatten()).any(|b| (b - s).abs() <= ON_BREAK)
         };
         let pinned = problem.sliding(&at_break);
-        let demands = Demands { wave_number, scaled_jacobian: floor + ANGLE_AIM, size: SIZE_AIM * size };
-        problem.follow(demands, pinned);
+        let demands = Demands { scaled_jacobian: floor + ANGLE_AIM, size: SIZE_AIM * size };
+        problem.follow(wave_number, demands, pinned);
         let start = problem.unknowns.clone();
         let steps = (STEPS * FULL_STEPS / mesh.quads.len().max(FULL_STEPS)).max(LEAST_STEPS);
         let limits = Limits { steps, progress: PROGRESS };

@@ -416,7 +416,7 @@ mod tests {
         let mut problem =
             Problem::new(&boundary, &reference, None, &mesh, None, true, &straightness.everywhere());
         // Angles and sizes beyond them, too.
-        problem.follow(Demands { wave_number: 9.0, scaled_jacobian: 0.7, size: 0.3 }, Vec::new());
+        problem.follow(9.0, Demands { scaled_jacobian: 0.7, size: 0.3 }, Vec::new());
         check_gradients(problem);
     }
 

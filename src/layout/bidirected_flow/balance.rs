@@ -89,15 +89,15 @@ impl BidirectedFlow {
     }
 
     /// By how much the label of `to` is above that of `from`: what a step between them has to cost at least.
-    pub(super) fn fall(&self, from: u32, to: u32) -> i64 {
+    pub(super) fn rise(&self, from: u32, to: u32) -> i64 {
         self.labels[to as usize] - self.labels[from as usize]
     }
 
     /// Calls `f(cost, step, next state)` for every way to leave `state` that is allowed.
     pub(super) fn allowed(&self, state: u32, banned: &[u32], mut f: impl FnMut(i64, Step, u32)) {
         self.transitions(state, |a, step, t| {
-            let fall = if self.by_labels { self.fall(state, t) } else { 0 };
-            let mut cost = (self.marginal(a, step) - fall).max(0) + 1;
+            let rise = if self.by_labels { self.rise(state, t) } else { 0 };
+            let mut cost = (self.marginal(a, step) - rise).max(0) + 1;
             if step < 0 {
                 if self.values[a] <= self.variables[a].lower || banned.contains(&(a as u32)) {
                     return;

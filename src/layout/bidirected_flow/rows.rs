@@ -21,7 +21,7 @@ impl BidirectedFlow {
         let (start, goal) = (self.state(head, head.sign), self.state(tail, -tail.sign));
         let mut own = self.marginal(a as usize, 1);
         if self.by_labels {
-            own = (own - self.fall(goal, start)).max(0);
+            own = (own - self.rise(goal, start)).max(0);
         }
         if start == goal {
             return Ok((own, vec![(a, 1)]));
@@ -79,7 +79,7 @@ impl BidirectedFlow {
                 let least = |a: &&u32| {
                     let [tail, head] = self.variables[**a as usize].ends;
                     let [from, to] = [self.state(tail, -tail.sign), self.state(head, head.sign)];
-                    self.marginal(**a as usize, 1) - self.fall(from, to)
+                    self.marginal(**a as usize, 1) - self.rise(from, to)
                 };
                 let cheapest = self.rows[r].variables.iter().min_by_key(least).copied();
                 if let Some(a) = cheapest.filter(|_| is_short(self, r)) {

@@ -6,22 +6,21 @@
 use crate::numerics::{cross, Vector};
 use crate::smooth::kernel::Sides;
 
-/// Weight of a squared shortfall of the scaled Jacobian, at each sample: a hundredth is worth a tenth of S.
+/// Weight of a squared shortfall of the scaled Jacobian, at each sample: a hundredth is worth a tenth of the errors that
+/// elements are moved for.
 const ANGLE_WEIGHT: f64 = 5e3;
 /// Weight of a squared excess of the size: a thousandth is worth as much.
 const SIZE_WEIGHT: f64 = 1e5;
 
-/// What is asked for.
+/// What is to be kept: at least this scaled Jacobian, at most this mean length of opposite sides.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::smooth) struct Demands {
-    pub wave_number: f64,
-    /// Scaled Jacobian and size to be kept.
     pub scaled_jacobian: f64,
     pub size: f64,
 }
 
 impl Demands {
-    /// The cost of what an element with `count` samples a side, at `t`, is beyond them; its gradient is added.
+    /// The cost of what an element with `count` samples a side, at `t`, is beyond what is to be kept; its gradient is added.
     #[inline(always)]
     pub fn penalty<const L: usize>(
         &self,

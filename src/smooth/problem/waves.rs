@@ -14,7 +14,8 @@
 
 use super::demands::{corner_shares, corners, give, give_corners, Demands};
 use super::{Freedom, LocalVertex, Problem};
-use crate::numerics::tolerances::{LEAST_WAVE_ERROR, SOLUTION_DEGREES};
+use crate::numerics::solution_degrees::{solution_degrees, PerDegree, DEGREES};
+use crate::numerics::tolerances::LEAST_WAVE_ERROR;
 use crate::numerics::{legendre, GaussLobatto, Vector};
 use crate::smooth::kernel::{sum, Lanes, Sides};
 use crate::smooth::reference::MOST_LANES;
@@ -29,17 +30,15 @@ const MOST_WAVES: usize = 24;
 const TERMS: usize = 10;
 /// Weight of ln S against the shape energy, which is about 1/2 an element: it only keeps order.
 const WEIGHT: f64 = 10.0;
-/// Mean squares, for each of the degrees.
-type Errors = [f64; SOLUTION_DEGREES.len()];
-
 /// Tables and what changes from element to element.
 #[derive(Debug, Clone)]
 pub(super) struct WaveTerm {
+    wave_number: f64,
     demands: Demands,
     /// Weights of the samples, sum 1.
     weights: Vec<f64>,
     /// For each degree what gives the two next Legendre coefficients from values at the samples.
-    modes: [[[f64; MOST_LANES]; 2]; SOLUTION_DEGREES.len()],
+    modes: [[[f64; MOST_LANES]; 2]; DEGREES],
     /// Highest order n.
     waves: usize,
     /// Unknowns that stay.
@@ -47,7 +46,7 @@ pub(super) struct WaveTerm {
 }
 
 impl WaveTerm {
-    pub fn new(order: usize, demands: Demands, pinned: Vec<u32>) -> Self {
+    pub fn new(order: usize, wave_number: f64, demands: Demands, pinned: Vec<u32>) -> Self {
         let rule = GaussLobatto::new(order + MORE_SAMPLES - 1);
         // Lanes left over have no weight.
         let mode = |m: usize| {
@@ -59,11 +58,11 @@ impl WaveTerm {
             }
             mode
         };
-        let degrees = SOLUTION_DEGREES.map(|share| ((share * order as f64).round() as usize).max(1));
         WaveTerm {
+            wave_number,
             demands,
             weights: rule.weights.iter().map(|w| 0.5 * w).collect(),
-            modes: degrees.map(|degree| [mode(degree + 1), mode(degree + 2)]),
+            modes: solution_degrees(order).map(|degree| [mode(degree + 1), mode(degree + 2)]),
             waves: order + MORE_WAVES,
             pinned,
         }
@@ -72,7 +71,7 @@ impl WaveTerm {
     /// J_n(κr) e^{inφ} for n from −1 up on the points of a line round its middle: real and imaginary parts.
     #[inline(always)]
     fn circular<const L: usize>(&self, points: &[[f64; L]; 2]) -> [[[f64; L]; MOST_WAVES]; 2] {
-        let kappa = self.demands.wave_number;
+        let kappa = self.wave_number;
         let (last, top) = (self.weights.len() - 1, self.waves + 1);
         let [px, py] = points;
         let (mx, my) = (0.5 * (px[0] + px[last]), 0.5 * (py[0] + py[last]));
@@ -114,9 +113,9 @@ impl WaveTerm {
 
     /// Mean squares of what polynomials of each degree leave along a line through `points`.
     #[inline(always)]
-    fn line_errors<const L: usize>(&self, points: &[[f64; L]; 2]) -> Errors {
+    fn line_errors<const L: usize>(&self, points: &[[f64; L]; 2]) -> PerDegree {
         let [re, im] = self.circular(points);
-        let mut errors = Errors::default();
+        let mut errors = PerDegree::default();
         for n in 1..=self.waves + 2 {
             let weight = if n == 1 { 1.0 } else { 2.0 };
             for (error, modes) in errors.iter_mut().zip(&self.modes) {
@@ -137,7 +136,7 @@ impl WaveTerm {
     fn line_gradient<const L: usize>(
         &self,
         points: &[[f64; L]; 2],
-        factors: Errors,
+        factors: PerDegree,
         gradient: &mut [[f64; L]; 2],
     ) {
         let [re, im] = self.circular(points);
@@ -145,7 +144,7 @@ impl WaveTerm {
             let weight = if n == 1 { 1.0 } else { 2.0 };
             let (mut ax, mut ay) = ([0.0; L], [0.0; L]);
             for (factor, modes) in factors.iter().zip(&self.modes) {
-                let factor = factor * weight * self.demands.wave_number;
+                let factor = factor * weight * self.wave_number;
                 for mode in modes {
                     let (mut x, mut y) = ([0.0; L], [0.0; L]);
                     for k in 0..L {
@@ -201,9 +200,9 @@ impl WaveTerm {
 
     /// Mean square errors on an element with `sides`.
     #[inline(always)]
-    fn errors<const L: usize>(&self, t: &[f64; L], sides: &Sides<L>) -> Errors {
+    fn errors<const L: usize>(&self, t: &[f64; L], sides: &Sides<L>) -> PerDegree {
         let places = self.places(t, sides);
-        let mut errors = Errors::default();
+        let mut errors = PerDegree::default();
         for (i, weight) in self.weights.iter().enumerate() {
             for line in [places[i], self.column(&places, i)] {
                 errors.iter_mut().zip(self.line_errors(&line)).for_each(|(sum, e)| *sum += weight * e);
@@ -214,7 +213,7 @@ impl WaveTerm {
 
     /// The gradient of the sum of an element's errors, each times its factor, to the values of its sides.
     #[inline(always)]
-    fn gradient<const L: usize>(&self, t: &[f64; L], sides: &Sides<L>, factors: Errors) -> Sides<L> {
+    fn gradient<const L: usize>(&self, t: &[f64; L], sides: &Sides<L>, factors: PerDegree) -> Sides<L> {
         let count = self.weights.len();
         let places = self.places(t, sides);
         let mut pull = [[[0.0; L]; 2]; L];
@@ -246,8 +245,8 @@ impl WaveTerm {
 
 impl Problem<'_> {
     /// Adds the term to what is minimised from now on; the unknowns `pinned` stay.
-    pub fn follow(&mut self, demands: Demands, pinned: Vec<u32>) {
-        self.waves = Some(WaveTerm::new(self.reference.order, demands, pinned));
+    pub fn follow(&mut self, wave_number: f64, demands: Demands, pinned: Vec<u32>) {
+        self.waves = Some(WaveTerm::new(self.reference.order, wave_number, demands, pinned));
     }
 
     /// The term's value if there is one; adds its gradient to the adjoint of the edges' samples.
@@ -256,7 +255,7 @@ impl Problem<'_> {
         let Some(term) = self.waves.take() else { return 0.0 };
         let lanes = Lanes::<L>::new(&self.reference.samples);
         // The factors of the gradients need the sums over all elements first.
-        let (mut totals, mut area) = (Errors::default(), 0.0);
+        let (mut totals, mut area) = (PerDegree::default(), 0.0);
         for e in 0..self.elements.len() {
             let own = term.errors(&lanes.t, &self.sides(e, &lanes));
             let target = self.elements[e].target.area;
