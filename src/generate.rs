@@ -11,6 +11,7 @@ mod rounds;
 mod smooth_edges;
 mod starts;
 mod symmetric;
+mod tighten;
 mod watch;
 
 use crate::base_mesh::{self, Triangulation};
@@ -21,6 +22,7 @@ use crate::options::Options;
 use crate::progress::Stage;
 use crate::stages::Stages;
 use rounds::Refined;
+use tighten::Tolerances;
 use watch::Watch;
 
 /// Base meshes tried, each finer than the one before, until blocks and elements come out right.
@@ -66,7 +68,9 @@ fn one_mesh(domain: &Domain, options: &Options, finer: usize, stages: &mut Stage
         Boundary::new(domain)
     })?;
     stages.boundary = Some(boundary.clone());
-    let tolerance = BoundaryTolerance::new(options, &boundary);
+    let tolerances = watch.run(stages, Stage::Domain, |_| {
+        Tolerances::new(options, &boundary).map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)))
+    })?;
     let group = watch.run(stages, Stage::Domain, |stages| {
         symmetric::wanted(&boundary, &DomainCurve { boundary: &boundary, domain }, options, stages)
     })?;
@@ -87,19 +91,30 @@ fn one_mesh(domain: &Domain, options: &Options, finer: usize, stages: &mut Stage
         stages.begin_attempt(attempt);
         // The stages speak of places in the canonical frame.
         let given = given.as_ref();
-        let elements = steps_1_to_9(&boundary, given, options, &tolerance, &mut request, &mut watch, stages)
-            .map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)));
+        let elements =
+            steps_1_to_9(&boundary, given, options, tolerances.first(), &mut request, &mut watch, stages)
+                .map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)));
         // The proof: curved elements of order N with positive Jacobians, on the exact curves.
         let result = elements.and_then(|elements| {
             if !group.is_trivial() {
-                let setting = symmetric::Setting { options, tolerance: &tolerance };
+                let setting = symmetric::Setting { options, tolerances: &tolerances };
                 let made =
                     symmetric::proven(setting, &boundary, domain, &group, &elements, &mut watch, stages)?;
                 if let Some(mesh) = made {
                     return Ok(mesh);
                 }
             }
-            proof::proven(&elements.mesh, &boundary, domain, options, &tolerance, &mut watch, stages)
+            let mesh = tighten::tightened(
+                &elements.mesh,
+                &boundary,
+                options,
+                &tolerances,
+                false,
+                &mut watch,
+                stages,
+            )
+            .map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)))?;
+            proof::proven(&mesh, &boundary, domain, options, tolerances.asked(), &mut watch, stages)
         });
         match result {
             Ok(mesh) => return Ok(mesh),

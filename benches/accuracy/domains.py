@@ -23,6 +23,8 @@ DOMAINS = (
 )
 # Samples of a curve from which Newton's iteration finds the nearest point.
 SAMPLES = 20000
+# Samples that it starts from: where curves meet, the nearest one may lie on the wrong side of the joint.
+STARTS = 3
 # Largest gap between points along a curve, as a share of its length, at which they are said to follow it.
 NEAR = 0.1
 # Largest degree of a polynomial equation.
@@ -30,13 +32,14 @@ DEGREE = 12
 
 
 class Curve:
-    """`point` and its derivative on [0, 1]; `add` makes it a curve of Gmsh's kernel between two of its points."""
+    """`point` and its derivative on [0, 1]; `add` makes it curves of Gmsh's kernel between two of its points."""
 
     def __init__(self, point, add):
         self.point, self._add = point, add
 
     def add(self, kernel, start, end):
-        return self._add(kernel, start, end)
+        added = self._add(kernel, start, end)
+        return added if isinstance(added, list) else [added]
 
     def derivative(self, t):
         step = 1e-6
@@ -131,10 +134,24 @@ def spline(rows):
     control[[0, -1]] = points[[0, -1]]
     curve = BSpline(padded, control, 3)
 
-    def add(kernel, a, b):
+    def part(kernel, a, b, first, last):
+        """From the knot `first` to the knot `last`: the same cubics, whose control points interpolation finds."""
+        own = knots[first : last + 1]
+        padded = np.concatenate([[own[0]] * 3, own, [own[-1]] * 3])
+        greville = np.array([padded[k + 1 : k + 4].mean() for k in range(len(own) + 2)])
+        control = np.linalg.solve(BSpline(padded, np.eye(len(own) + 2), 3)(greville), curve(greville))
         inner = [kernel.addPoint(x, y, 0) for x, y in control[1:-1]]
-        multiple = [4] + [1] * (len(knots) - 2) + [4]
-        return kernel.addBSpline([a, *inner, b], degree=3, knots=list(knots), multiplicities=multiple)
+        multiple = [4] + [1] * (len(own) - 2) + [4]
+        return kernel.addBSpline([a, *inner, b], degree=3, knots=list(own), multiplicities=multiple)
+
+    def add(kernel, a, b):
+        last = len(knots) - 1
+        if a != b:
+            return part(kernel, a, b, 0, last)
+        # Gmsh takes a closed spline for a periodic one: two halves are none.
+        middle = last // 2
+        between = kernel.addPoint(*curve(knots[middle]), 0)
+        return [part(kernel, a, between, 0, middle), part(kernel, between, a, middle, last)]
 
     return Curve(lambda t: curve(np.asarray(t)), add)
 
@@ -226,17 +243,18 @@ class Domain:
 
     def distance(self, points):
         """The largest distance of `points` from the boundary, in diagonals."""
-        _, nearest = self._tree.query(points)
-        which, t = nearest // (SAMPLES + 1), nearest % (SAMPLES + 1) / SAMPLES
-        worst = 0.0
-        for k in np.unique(which):
-            own, s = points[which == k], t[which == k]
-            curve = self.curves[k]
-            for _ in range(4):
-                apart, slope = curve.point(s) - own, curve.derivative(s)
-                s = np.clip(s - np.sum(apart * slope, axis=1) / np.sum(slope * slope, axis=1), 0, 1)
-            worst = max(worst, float(np.hypot(*(curve.point(s) - own).T).max()))
-        return worst / self.diagonal
+        _, nearest = self._tree.query(points, STARTS)
+        least = np.full(len(points), np.inf)
+        for starts in nearest.T:
+            which, t = starts // (SAMPLES + 1), starts % (SAMPLES + 1) / SAMPLES
+            for k in np.unique(which):
+                own, s = points[which == k], t[which == k]
+                curve = self.curves[k]
+                for _ in range(4):
+                    apart, slope = curve.point(s) - own, curve.derivative(s)
+                    s = np.clip(s - np.sum(apart * slope, axis=1) / np.sum(slope * slope, axis=1), 0, 1)
+                least[which == k] = np.minimum(least[which == k], np.hypot(*(curve.point(s) - own).T))
+        return float(least.max()) / self.diagonal
 
     def followed(self, points):
         """Whether `points`, all along a mesh's boundary, lie along every curve: some meshes lose small loops."""
@@ -249,7 +267,7 @@ class Domain:
         for loop in self.loops:
             ends = [c.point(np.array([0.0, 1.0])) for c in loop]
             starts = [kernel.addPoint(*e[0], 0) for e in ends]
-            tags = [c.add(kernel, a, b) for c, a, b in zip(loop, starts, starts[1:] + starts[:1])]
+            tags = [t for c, a, b in zip(loop, starts, starts[1:] + starts[:1]) for t in c.add(kernel, a, b)]
             wires.append(kernel.addWire(tags))
         return kernel.addPlaneSurface(wires)
 

@@ -10,12 +10,19 @@ use crate::refine::{self, Limits, Reach, Refusals, SizeLimit};
 use crate::smooth::{Care, Optimiser};
 use crate::stages::Stages;
 
-/// Most times that a mesh is coarsened: once smoothed as a whole it may allow what it did not before ...
+/// Most times that a mesh is coarsened: once smoothed as a whole it may allow what it did not before
+/// (not tried for a fast mesh).
 const PASSES: usize = 2;
-/// ... which is not tried for a fast mesh, nor above so many quads: it takes as long as the first time and brings a percent.
-const MOST_AGAIN: usize = 1500;
 /// Quads above which a few elements that smoothing made worse are seen to before its result is judged.
 const MANY: usize = 10_000;
+
+/// How hard to look for elements that can go.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Search {
+    pub effort: Effort,
+    /// Quads above which a mesh is coarsened once only.
+    pub most_again: usize,
+}
 
 /// `mesh`, which is valid, with as few elements as keep the scaled Jacobian at `floor` and the sizes within `limit`.
 pub(super) fn fewer_elements(
@@ -23,15 +30,15 @@ pub(super) fn fewer_elements(
     optimiser: &Optimiser,
     floor: f64,
     limit: Option<SizeLimit>,
-    effort: Effort,
+    search: Search,
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<QuadMesh> {
     let limits = Limits { sizes: limit, ..Limits::new(floor) };
     let mut refusals = Refusals::default();
-    let (passes, reach) = if effort == Effort::Fast { (1, Reach::Near) } else { (PASSES, Reach::Far) };
+    let (passes, reach) = if search.effort == Effort::Fast { (1, Reach::Near) } else { (PASSES, Reach::Far) };
     for pass in 0..passes {
-        if pass > 0 && mesh.quads.len() > MOST_AGAIN {
+        if pass > 0 && mesh.quads.len() > search.most_again {
             break;
         }
         let progress = watch.coarsening();

@@ -5,6 +5,7 @@ mod part;
 
 use super::rounds::{follow_waves, note, Refined, MOST_FOLLOWING};
 use super::smooth_edges::smooth_edges;
+use super::tighten::{tightened, Tolerances};
 use super::watch::Watch;
 use super::TOLERANCE_AIM;
 use crate::domain::{Boundary, Domain};
@@ -47,7 +48,7 @@ pub(super) struct Symmetrised {
 #[derive(Clone, Copy)]
 pub(super) struct Setting<'a> {
     pub options: &'a Options,
-    pub tolerance: &'a BoundaryTolerance,
+    pub tolerances: &'a Tolerances,
 }
 
 /// The symmetries of `boundary` that a mesh shall have. Sizes and base meshes of the caller's know nothing of them.
@@ -100,9 +101,13 @@ pub(super) fn proven(
         boundary,
         symmetries: found.elements.iter().map(|e| &group.elements[*e]).collect(),
     };
-    let proven = watch.run(stages, Stage::Mesh, |_| {
-        HighOrderMesh::with_curve(&found.mesh, boundary, &curve, setting.tolerance)
-    });
+    let Setting { options, tolerances } = setting;
+    let proven =
+        tightened(&found.mesh, boundary, options, tolerances, true, watch, stages).and_then(|mesh| {
+            let prove =
+                |_: &mut Stages| HighOrderMesh::with_curve(&mesh, boundary, &curve, tolerances.asked());
+            watch.run(stages, Stage::Mesh, prove)
+        });
     match proven {
         Ok(mesh) => Ok(Some(mesh)),
         Err(error) if error.ends_a_run() => Err(error),
@@ -128,7 +133,8 @@ pub(super) fn symmetrise(
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<(Symmetrised, Option<Asymmetry>)> {
-    let aim = BoundaryTolerance { value: TOLERANCE_AIM * setting.tolerance.value, ..*setting.tolerance };
+    let first = *setting.tolerances.first();
+    let aim = BoundaryTolerance { value: TOLERANCE_AIM * first.value, ..first };
     let optimiser = Optimiser::new(boundary, setting.options.order, Some(aim));
     let quality = optimiser.quality(&direct.coarse);
     let bar = Bar::of(&quality, setting.options, boundary);

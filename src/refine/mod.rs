@@ -8,6 +8,9 @@
 //! error (de Boor's equidistribution, *Good approximation by splines with variable knots*, 1973).
 //! [`place_by_halving`] is the paper's own rule (Algorithm 1), [`subdivide`] the same on a mesh.
 //!
+//! A tolerance that takes many more edges than the shape is met in [`tolerance_steps`]: a mesh for a looser one, divided
+//! by [`divide_to_tolerance`].
+//!
 //! [`coarsen`] takes a valid mesh that is finer than it need be and removes chords and diagonals,
 //! re-optimising round each, while the tolerance and the quality hold. [`OnChain`] moves boundary vertices to where
 //! the curve is less smooth. [`SizeLimit`] divides what is larger than asked for, and further where elements' maps
@@ -35,6 +38,7 @@ mod subdivide;
 #[cfg(test)]
 mod tests;
 mod thin;
+mod tighten;
 mod to_breaks;
 mod trial;
 mod valence;
@@ -52,5 +56,6 @@ pub use split::split_chords;
 pub use strips::StripRemoval;
 pub use subdivide::subdivide;
 pub use thin::thin;
+pub use tighten::{divide_to_tolerance, tolerance_steps};
 pub use to_breaks::{OnChain, ToBreak, Undo};
 pub use trial::{Limits, Reach};

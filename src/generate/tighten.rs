@@ -1,0 +1,78 @@
+//! Tolerances that take many more edges than the shape does: met by division of a mesh that keeps a looser one.
+
+use super::fewer_elements::{fewer_elements, Search};
+use super::rounds::note;
+use super::watch::Watch;
+use super::TOLERANCE_AIM;
+use crate::domain::Boundary;
+use crate::error::Result;
+use crate::mesh::{scaled_jacobian_ceiling, BoundaryError, BoundaryTolerance, QuadMesh};
+use crate::options::{Effort, Options, Subdivision};
+use crate::progress::Stage;
+use crate::refine::{divide_to_tolerance, tolerance_steps};
+use crate::smooth::Optimiser;
+use crate::stages::Stages;
+
+/// Quads above which a divided mesh is coarsened once only. Up to here the limit of its work ends the first time, and
+/// again brings a third.
+const MOST_AGAIN: usize = 8000;
+
+/// The tolerances that a mesh keeps one after the other, each a multiple of the next.
+pub(super) struct Tolerances {
+    steps: Vec<BoundaryTolerance>,
+}
+
+impl Tolerances {
+    /// # Errors
+    /// [`Error::Tolerance`](crate::error::Error::Tolerance) where an edge of no length would not keep it.
+    pub fn new(options: &Options, boundary: &Boundary) -> Result<Self> {
+        let asked = BoundaryTolerance::new(options, boundary);
+        let steps = match options.subdivision {
+            Subdivision::EqualError => tolerance_steps(boundary, &asked)?,
+            // The paper's rule divides from the layout on.
+            Subdivision::Halving => vec![asked],
+        };
+        Ok(Tolerances { steps })
+    }
+
+    /// The one that blocks and elements are made for.
+    pub fn first(&self) -> &BoundaryTolerance {
+        &self.steps[0]
+    }
+
+    /// The one that was asked for.
+    pub fn asked(&self) -> &BoundaryTolerance {
+        &self.steps[self.steps.len() - 1]
+    }
+}
+
+/// `mesh`, which keeps the first tolerance, divided until it keeps the one asked for; and coarsened, unless it has
+/// symmetries to lose or a size was asked for: parts of what is small enough are.
+pub(super) fn tightened(
+    mesh: &QuadMesh,
+    boundary: &Boundary,
+    options: &Options,
+    tolerances: &Tolerances,
+    symmetric: bool,
+    watch: &mut Watch,
+    stages: &mut Stages,
+) -> Result<QuadMesh> {
+    let mut finer = mesh.clone();
+    let floor = options.quality_floor * scaled_jacobian_ceiling(boundary);
+    let coarsens = !symmetric && options.element_size.is_none() && options.max_element_size.is_none();
+    for step in &tolerances.steps[1..] {
+        let aim = BoundaryTolerance { value: TOLERANCE_AIM * step.value, ..*step };
+        let optimiser = Optimiser::new(boundary, options.order, Some(aim));
+        let error = BoundaryError::new(aim);
+        finer = watch.run(stages, Stage::Refine, |_| {
+            divide_to_tolerance(finer, boundary, &error, options.order, options.max_elements)
+        })?;
+        note(stages, &optimiser, &finer, "tighten");
+        if coarsens {
+            let effort = if step == tolerances.asked() { options.effort } else { Effort::Fast };
+            let search = Search { effort, most_again: MOST_AGAIN };
+            finer = fewer_elements(finer, &optimiser, floor, None, search, watch, stages)?;
+        }
+    }
+    Ok(finer)
+}

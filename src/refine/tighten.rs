@@ -1,0 +1,141 @@
+//! Tolerances that take many more edges than the shape does: a mesh for a looser one, and its division.
+//!
+//! A layout whose boundary edges are many times shorter than what they bound is a bundle of slivers that cross the
+//! domain, and untangling them may fail. Few elements for a tolerance at which the shape decides are soon valid, and
+//! parts of valid elements stay so: their boundaries move by no more than the looser tolerance.
+
+use super::divide::chord_parts;
+use super::pieces::growth;
+use super::{divide_chords, least_pieces, subdivide};
+use crate::domain::{Boundary, Chain, Span};
+use crate::error::{Error, Result};
+use crate::mesh::{BoundaryError, BoundaryTolerance, Edge, QuadMesh};
+
+/// Edges that the tolerance takes for each one that the shape takes above which a looser one comes first. At order 5
+/// and a relative tolerance of 1e-5 domains have 0.5 to 1.
+const MOST_FOR_SHAPE: f64 = 2.0;
+/// Edges of all chains that are few however many the shape takes.
+const FEW_EDGES: f64 = 100.0;
+/// Angle, in radians, by which the boundary turns along an edge that the shape takes.
+const TURN: f64 = 0.9;
+/// Edges that a tolerance takes at least for each one of the next looser; twice as many on smooth curves.
+const WORTH: f64 = 1.4;
+/// Most tolerances one after the other.
+const MOST_STEPS: usize = 30;
+/// Most divisions for one tolerance: on curves with knots more edges may be worse ones.
+const ROUNDS: usize = 12;
+/// Most parts of one edge in a division.
+const MOST_PARTS: u32 = 64;
+
+/// The tolerances that a mesh should keep one after the other, the last one `tolerance` itself: the only one unless it
+/// takes many more edges than the turns of the boundary do. Each takes about twice the edges of the one before.
+///
+/// # Errors
+/// As [`least_pieces`].
+pub fn tolerance_steps(boundary: &Boundary, tolerance: &BoundaryTolerance) -> Result<Vec<BoundaryTolerance>> {
+    let shape: f64 = boundary.chains.iter().map(edges_for_shape).sum();
+    let few = FEW_EDGES.max(MOST_FOR_SHAPE * shape);
+    let count = |tolerance: &BoundaryTolerance| -> Result<f64> {
+        let error = BoundaryError::new(*tolerance);
+        let pieces = boundary.chains.iter().map(|chain| least_pieces(chain, &error));
+        Ok(pieces.sum::<Result<usize>>()? as f64)
+    };
+    let mut steps = vec![*tolerance];
+    let mut before = count(tolerance)?;
+    if before <= few {
+        return Ok(steps);
+    }
+    // As many steps as needed, all alike, so that the first is hardly looser than it has to be.
+    let halvings = (before / few).log2();
+    let factor = (halvings / halvings.ceil() * growth(&BoundaryError::new(*tolerance))).exp2();
+    let mut looser = *tolerance;
+    for _ in 0..MOST_STEPS {
+        looser.value *= factor;
+        let now = count(&looser)?;
+        // Curves with knots lose fewer edges than smooth ones: what loses few is passed over.
+        if now <= few || now * WORTH < before {
+            steps.push(looser);
+            before = now;
+        }
+        if now <= few {
+            break;
+        }
+    }
+    steps.reverse();
+    Ok(steps)
+}
+
+/// Edges that the turns of a chain take.
+fn edges_for_shape(chain: &Chain) -> f64 {
+    let samples = &chain.samples;
+    let turn: f64 =
+        samples.windows(2).map(|w| 0.5 * (w[0].curvature + w[1].curvature).abs() * (w[1].s - w[0].s)).sum();
+    1.0 + turn / TURN
+}
+
+/// `mesh` with chords divided until every boundary edge keeps the tolerance: into equal parts, which smooth curves
+/// need, or by halving, which leaves fewer where knots take short edges; whichever makes fewer quads. `order` as for
+/// [`divide_chords`].
+///
+/// # Errors
+/// [`Error::Tolerance`] with the worst edge's place when both take more than `most` quads; [`Error::Layout`] when the
+/// mesh is defective.
+pub fn divide_to_tolerance(
+    mesh: QuadMesh,
+    boundary: &Boundary,
+    error: &BoundaryError,
+    order: usize,
+    most: usize,
+) -> Result<QuadMesh> {
+    let halved = subdivide(mesh.clone(), boundary, error, most);
+    let most = halved.as_ref().map_or(most, |mesh| mesh.quads.len() - 1);
+    divide_equally(mesh, boundary, error, order, most).or(halved)
+}
+
+/// The same into equal parts.
+fn divide_equally(
+    mut mesh: QuadMesh,
+    boundary: &Boundary,
+    error: &BoundaryError,
+    order: usize,
+    most: usize,
+) -> Result<QuadMesh> {
+    for round in 0.. {
+        let ratio = |e: &Edge| e.span.map_or(0.0, |span| error.ratio(boundary, span));
+        let worst = mesh.edges.iter().max_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+        let Some(span) = worst.filter(|e| ratio(e) > 1.0).and_then(|e| e.span) else { break };
+        let refusal = Error::Tolerance {
+            error: error.of_span(boundary, span),
+            tolerance: error.tolerance.value,
+            at: boundary.chains[span.chain as usize].point(0.5 * (span.start + span.end)),
+        };
+        let wanted: Vec<u32> =
+            mesh.edges.iter().map(|e| e.span.map_or(1, |span| parts(span, boundary, error))).collect();
+        let parts = chord_parts(&mesh, &wanted);
+        let count =
+            |edges: &[u32; 4]| f64::from(parts[edges[0] as usize]) * f64::from(parts[edges[1] as usize]);
+        if round == ROUNDS || mesh.quad_edges.iter().map(count).sum::<f64>() > most as f64 {
+            return Err(refusal);
+        }
+        mesh = divide_chords(&mesh, boundary, &parts, order)?;
+    }
+    Ok(mesh)
+}
+
+/// Equal parts of `span` of which each keeps the tolerance.
+fn parts(span: Span, boundary: &Boundary, error: &BoundaryError) -> u32 {
+    let chain = &boundary.chains[span.chain as usize];
+    let exponent = 1.0 / growth(error);
+    let largest = |n: u32| {
+        let at = |k: u32| span.start + (span.end - span.start) * f64::from(k) / f64::from(n);
+        (0..n).map(|k| error.of_chain(chain, at(k), at(k + 1))).fold(0.0, f64::max) / error.tolerance.value
+    };
+    let mut n = 1;
+    let mut now = largest(n);
+    while now > 1.0 && n < MOST_PARTS {
+        let guess = f64::from(n) * now.powf(exponent);
+        n = (guess as u32).clamp(n + 1 + n / 8, MOST_PARTS);
+        now = largest(n);
+    }
+    n
+}
