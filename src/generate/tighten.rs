@@ -17,6 +17,9 @@ use crate::stages::Stages;
 /// again brings a third.
 const MOST_AGAIN: usize = 8000;
 
+/// Quads above which it is not coarsened: the limit of the work ends before one in twenty is gone.
+const MOST_COARSENED: usize = 25_000;
+
 /// The tolerances that a mesh keeps one after the other, each a multiple of the next.
 pub(super) struct Tolerances {
     steps: Vec<BoundaryTolerance>,
@@ -68,7 +71,7 @@ pub(super) fn tightened(
             divide_to_tolerance(finer, boundary, &error, options.order, options.max_elements)
         })?;
         note(stages, &optimiser, &finer, "tighten");
-        if coarsens {
+        if coarsens && finer.quads.len() <= MOST_COARSENED {
             let effort = if step == tolerances.asked() { options.effort } else { Effort::Fast };
             let search = Search { effort, most_again: MOST_AGAIN };
             finer = fewer_elements(finer, &optimiser, floor, None, search, watch, stages)?;

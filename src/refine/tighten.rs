@@ -14,6 +14,8 @@ use crate::mesh::{BoundaryError, BoundaryTolerance, Edge, QuadMesh};
 /// Edges that the tolerance takes for each one that the shape takes above which a looser one comes first. At order 5
 /// and a relative tolerance of 1e-5 domains have 0.5 to 1.
 const MOST_FOR_SHAPE: f64 = 2.0;
+/// The same that the first of several tolerances takes at most.
+const FIRST_FOR_SHAPE: f64 = 1.2;
 /// Edges of all chains that are few however many the shape takes.
 const FEW_EDGES: f64 = 100.0;
 /// Angle, in radians, by which the boundary turns along an edge that the shape takes.
@@ -24,6 +26,8 @@ const WORTH: f64 = 1.4;
 const MOST_STEPS: usize = 30;
 /// Most divisions for one tolerance: on curves with knots more edges may be worse ones.
 const ROUNDS: usize = 12;
+/// Quads above which equal parts are not compared with halving, which is made step by step.
+const MOST_COMPARED: usize = 50_000;
 /// Most parts of one edge in a division.
 const MOST_PARTS: u32 = 64;
 
@@ -34,7 +38,7 @@ const MOST_PARTS: u32 = 64;
 /// As [`least_pieces`].
 pub fn tolerance_steps(boundary: &Boundary, tolerance: &BoundaryTolerance) -> Result<Vec<BoundaryTolerance>> {
     let shape: f64 = boundary.chains.iter().map(edges_for_shape).sum();
-    let few = FEW_EDGES.max(MOST_FOR_SHAPE * shape);
+    let [most, few] = [MOST_FOR_SHAPE, FIRST_FOR_SHAPE].map(|share| FEW_EDGES.max(share * shape));
     let count = |tolerance: &BoundaryTolerance| -> Result<f64> {
         let error = BoundaryError::new(*tolerance);
         let pieces = boundary.chains.iter().map(|chain| least_pieces(chain, &error));
@@ -42,7 +46,7 @@ pub fn tolerance_steps(boundary: &Boundary, tolerance: &BoundaryTolerance) -> Re
     };
     let mut steps = vec![*tolerance];
     let mut before = count(tolerance)?;
-    if before <= few {
+    if before <= most {
         return Ok(steps);
     }
     // As many steps as needed, all alike, so that the first is hardly looser than it has to be.
@@ -87,9 +91,17 @@ pub fn divide_to_tolerance(
     order: usize,
     most: usize,
 ) -> Result<QuadMesh> {
-    let halved = subdivide(mesh.clone(), boundary, error, most);
-    let most = halved.as_ref().map_or(most, |mesh| mesh.quads.len() - 1);
-    divide_equally(mesh, boundary, error, order, most).or(halved)
+    let equal = divide_equally(mesh.clone(), boundary, error, order, most);
+    match &equal {
+        Ok(equal) if equal.quads.len() > MOST_COMPARED => {}
+        Ok(equal) => {
+            if let Ok(halved) = subdivide(mesh, boundary, error, equal.quads.len() - 1) {
+                return Ok(halved);
+            }
+        }
+        Err(_) => return subdivide(mesh, boundary, error, most).or(equal),
+    }
+    equal
 }
 
 /// The same into equal parts.
