@@ -6,6 +6,7 @@
 
 mod blocks;
 mod fewer_elements;
+mod finish;
 mod proof;
 mod rounds;
 mod smooth_edges;
@@ -21,7 +22,7 @@ use crate::mesh::{BoundaryTolerance, DomainCurve, HighOrderMesh};
 use crate::options::Options;
 use crate::progress::Stage;
 use crate::stages::Stages;
-use rounds::Refined;
+use finish::Elements;
 use tighten::Tolerances;
 use watch::Watch;
 
@@ -98,22 +99,21 @@ fn one_mesh(domain: &Domain, options: &Options, finer: usize, stages: &mut Stage
         let result = elements.and_then(|elements| {
             if !group.is_trivial() {
                 let setting = symmetric::Setting { options, tolerances: &tolerances };
-                let made =
-                    symmetric::proven(setting, &boundary, domain, &group, &elements, &mut watch, stages)?;
+                let made = symmetric::proven(
+                    setting,
+                    &boundary,
+                    domain,
+                    &group,
+                    &elements.refined,
+                    &mut watch,
+                    stages,
+                )?;
                 if let Some(mesh) = made {
                     return Ok(mesh);
                 }
             }
-            let mesh = tighten::tightened(
-                &elements.mesh,
-                &boundary,
-                options,
-                &tolerances,
-                false,
-                &mut watch,
-                stages,
-            )
-            .map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)))?;
+            let finished = finish::finished(&elements, &boundary, options, &tolerances, &mut watch, stages);
+            let mesh = finished.map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)))?;
             proof::proven(&mesh, &boundary, domain, options, tolerances.asked(), &mut watch, stages)
         });
         match result {
@@ -139,7 +139,7 @@ fn steps_1_to_9(
     request: &mut base_mesh::Request,
     watch: &mut Watch,
     stages: &mut Stages,
-) -> Result<Refined> {
+) -> Result<Elements> {
     // Steps 1 to 3: base mesh, cross field, singularities; refined until the index theorem holds.
     let field = blocks::field(boundary, given, options, false, request, watch, stages)?;
 
@@ -156,5 +156,6 @@ fn steps_1_to_9(
     let (layout, sizes) = blocks?;
 
     // Steps 7 to 9: subdivide and smooth until every boundary edge meets the tolerance.
-    rounds::refine_and_smooth(boundary, options, aim, &layout, &sizes, watch, stages)
+    let refined = rounds::refine_and_smooth(boundary, options, aim, &layout, &sizes, watch, stages)?;
+    Ok(Elements { refined, sizes })
 }

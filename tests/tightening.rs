@@ -7,7 +7,8 @@ use quadrel::mesh::{BoundaryError, BoundaryTolerance, HighOrderMesh, Quality, Ta
 use quadrel::options::{Norm, Tolerance};
 use quadrel::refine::{divide_to_tolerance, least_pieces, subdivide, tolerance_steps};
 use quadrel::stages::Stages;
-use quadrel::{generate, Error, Options};
+use quadrel::{generate, input, Error, Options};
+use std::path::Path;
 use support::{boundary, chain, disc_o_grid, ellipse, o_grid};
 
 fn tolerance(order: usize, value: f64) -> BoundaryTolerance {
@@ -101,4 +102,27 @@ fn a_symmetric_domain_keeps_its_symmetries_through_the_steps() {
         .fold(f64::INFINITY, f64::min);
     // Division changes no shape: an element of a disc comes to 0.8.
     assert!(least > 0.7, "{least}");
+}
+
+#[test]
+fn a_size_divides_the_mesh_that_keeps_the_tolerance() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/domains/hohq/BlobAdapt.control");
+    let domain = input::read(&file, None).unwrap().domain;
+    let elements = |size: Option<f64>| {
+        let options = Options {
+            order: 2,
+            tolerance: Tolerance::Relative(1e-6),
+            max_element_size: size,
+            ..Options::default()
+        };
+        let mut stages = Stages::default();
+        let mesh = generate(&domain, &options, &mut stages).unwrap();
+        let actions: Vec<&str> = stages.rounds.iter().map(|round| round.action).collect();
+        assert!(actions.contains(&"tighten"), "{actions:?}");
+        (mesh.elements.len(), stages.boundary.unwrap())
+    };
+    let (free, boundary) = elements(None);
+    // A fifth of the diagonal: as large as most elements are.
+    let (sized, _) = elements(Some(0.2 * boundary.diagonal * boundary.frame.scale));
+    assert!(sized <= 2 * free, "{free} elements, {sized} of a size");
 }

@@ -1,14 +1,13 @@
 //! Steps 7 to 9: subdivide, smooth, coarsen; repeat until every boundary edge meets the tolerance.
 
 use super::fewer_elements::{fewer_elements, Search};
-use super::smooth_edges::smooth_edges;
 use super::watch::Watch;
 use crate::base_mesh::ElementSize;
 use crate::domain::{Boundary, BoundaryPoint, Place};
 use crate::error::{Error, Result};
 use crate::layout::QuadLayout;
 use crate::mesh::{scaled_jacobian_ceiling, BoundaryError, BoundaryTolerance, QuadMesh, Vertex};
-use crate::numerics::tolerances::{OFF_POWERS, ORDER_TIE, START_GRID};
+use crate::numerics::tolerances::{OFF_POWERS, START_GRID};
 use crate::numerics::Point;
 use crate::options::{Options, Subdivision};
 use crate::progress::Stage;
@@ -38,18 +37,14 @@ const FEW: f64 = 1e-3;
 /// Sizes in those that the caller's function allows above which elements are divided once more after smoothing,
 /// and after coarsening.
 pub(super) const TOO_LARGE: f64 = 1.1;
-/// Most quads of a mesh whose elements are moved to follow waves: of more each has little to gain.
-pub(super) const MOST_FOLLOWING: usize = 400;
 /// Most elements, as a multiple of the first round's, before another layout is tried.
 const MOST_GROWTH: usize = 3;
 
 /// A valid mesh that keeps the tolerance.
 pub(super) struct Refined {
-    pub mesh: QuadMesh,
-    /// The same before it was coarsened, ...
-    pub fine: QuadMesh,
-    /// ... and coarsened, before it was divided for the sizes.
     pub coarse: QuadMesh,
+    /// The same before it was coarsened.
+    pub fine: QuadMesh,
 }
 
 /// Makes the layout's quads curved elements that keep the tolerance.
@@ -148,59 +143,7 @@ pub(super) fn refine_and_smooth(
         let search = Search { effort: options.effort, most_again: MOST_AGAIN };
         mesh = fewer_elements(mesh, &optimiser, floor, limit, search, watch, stages)?;
     }
-    let coarse = mesh.clone();
-    let onto_breaks = |mesh: &mut QuadMesh, stages: &mut Stages, watch: &mut Watch| -> Result<()> {
-        let moved = coarsens
-            && watch.run(stages, Stage::Refine, |_| Ok(smooth_edges(mesh, boundary, &optimiser, floor)))?;
-        if moved {
-            note(stages, &optimiser, mesh, "joints");
-        }
-        Ok(())
-    };
-    onto_breaks(&mut mesh, stages, watch)?;
-    // Parts of valid elements are valid, parts of edges nearer to the curve, and a solver's error falls with their
-    // size as the order promises: no shape is smoothed any more.
-    let slack = if limit.is_some() { TOO_LARGE } else { 1.0 };
-    if options.element_size.is_some() || options.max_element_size.is_some() {
-        let whole = SizeLimit::new(&allowed);
-        let even = coarsens && options.element_size.is_none();
-        let size = options.max_element_size.filter(|_| even).map(|size| size / boundary.frame.scale);
-        // New vertices, too, go to breaks; where that made an element too large or worse it is divided once more.
-        // First for the size alone: what vertices at breaks and elsewhere mend takes no elements.
-        for (pass, parts_for) in [None, size, size].into_iter().enumerate() {
-            let before = mesh.quads.len();
-            mesh = watch.run(stages, Stage::Refine, |_| {
-                whole.divide_evenly(mesh, boundary, slack, options.order, options.max_elements, parts_for)
-            })?;
-            if mesh.quads.len() > before {
-                note(stages, &optimiser, &mesh, "divide");
-                onto_breaks(&mut mesh, stages, watch)?;
-            } else if pass > 0 {
-                continue;
-            }
-            if let Some(size) = size.filter(|_| mesh.quads.len() <= MOST_FOLLOWING) {
-                let follow = |_: &mut Stages| Ok(follow_waves(&mut mesh, size, &optimiser, floor));
-                if watch.run(stages, Stage::Smooth, follow)? {
-                    note(stages, &optimiser, &mesh, "follow");
-                }
-            }
-        }
-    }
-    if mesh.quads.len() > options.max_elements {
-        let reason =
-            format!("{} elements, more than the limit of {}", mesh.quads.len(), options.max_elements);
-        return Err(Error::Layout { reason, at: None });
-    }
-    Ok(Refined { mesh, fine, coarse })
-}
-
-/// Moves `mesh`, divided for `size`, so that its elements follow waves of 2πh, or of the diagonal if that is less: longer
-/// ones the domain does not see. Whether anything moved.
-pub(super) fn follow_waves(mesh: &mut QuadMesh, size: f64, optimiser: &Optimiser, floor: f64) -> bool {
-    let allowed = |_: Point| size;
-    let limit = SizeLimit::new(&allowed);
-    let small = |mesh: &QuadMesh| !limit.too_long(mesh, 1.0 + ORDER_TIE).contains(&true);
-    optimiser.follow(mesh, (1.0 / size).max(std::f64::consts::TAU), floor, size, &small)
+    Ok(Refined { coarse: mesh, fine })
 }
 
 /// Work after which no further round begins on `mesh`, nor its coarsening.

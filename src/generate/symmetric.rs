@@ -3,7 +3,8 @@
 mod bar;
 mod part;
 
-use super::rounds::{follow_waves, note, Refined, MOST_FOLLOWING};
+use super::finish::{follow_waves, MOST_FOLLOWING};
+use super::rounds::{note, Refined};
 use super::smooth_edges::smooth_edges;
 use super::tighten::{tightened, Tolerances};
 use super::watch::Watch;
@@ -103,7 +104,7 @@ pub(super) fn proven(
     };
     let Setting { options, tolerances } = setting;
     let proven =
-        tightened(&found.mesh, boundary, options, tolerances, true, watch, stages).and_then(|mesh| {
+        tightened(&found.mesh, boundary, options, tolerances, None, watch, stages).and_then(|mesh| {
             let prove =
                 |_: &mut Stages| HighOrderMesh::with_curve(&mesh, boundary, &curve, tolerances.asked());
             watch.run(stages, Stage::Mesh, prove)

@@ -4,12 +4,13 @@ use super::fewer_elements::{fewer_elements, Search};
 use super::rounds::note;
 use super::watch::Watch;
 use super::TOLERANCE_AIM;
+use crate::base_mesh::ElementSize;
 use crate::domain::Boundary;
 use crate::error::Result;
 use crate::mesh::{scaled_jacobian_ceiling, BoundaryError, BoundaryTolerance, QuadMesh};
 use crate::options::{Effort, Options, Subdivision};
 use crate::progress::Stage;
-use crate::refine::{divide_to_tolerance, tolerance_steps};
+use crate::refine::{divide_to_tolerance, tolerance_steps, SizeLimit};
 use crate::smooth::Optimiser;
 use crate::stages::Stages;
 
@@ -49,20 +50,22 @@ impl Tolerances {
     }
 }
 
-/// `mesh`, which keeps the first tolerance, divided until it keeps the one asked for; and coarsened, unless it has
-/// symmetries to lose or a size was asked for: parts of what is small enough are.
+/// `mesh`, which keeps the first tolerance, divided until it keeps the one asked for, and coarsened within `sizes`;
+/// without them (it has symmetries to lose) it is only divided.
 pub(super) fn tightened(
     mesh: &QuadMesh,
     boundary: &Boundary,
     options: &Options,
     tolerances: &Tolerances,
-    symmetric: bool,
+    sizes: Option<&ElementSize>,
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<QuadMesh> {
     let mut finer = mesh.clone();
     let floor = options.quality_floor * scaled_jacobian_ceiling(boundary);
-    let coarsens = !symmetric && options.element_size.is_none() && options.max_element_size.is_none();
+    let allowed = |p| sizes.map_or(f64::INFINITY, |sizes| sizes.allowed(p));
+    // One size for all divides the finished mesh.
+    let limit = options.element_size.as_ref().map(|_| SizeLimit::new(&allowed));
     for step in &tolerances.steps[1..] {
         let aim = BoundaryTolerance { value: TOLERANCE_AIM * step.value, ..*step };
         let optimiser = Optimiser::new(boundary, options.order, Some(aim));
@@ -71,10 +74,10 @@ pub(super) fn tightened(
             divide_to_tolerance(finer, boundary, &error, options.order, options.max_elements)
         })?;
         note(stages, &optimiser, &finer, "tighten");
-        if coarsens && finer.quads.len() <= MOST_COARSENED {
+        if sizes.is_some() && finer.quads.len() <= MOST_COARSENED {
             let effort = if step == tolerances.asked() { options.effort } else { Effort::Fast };
             let search = Search { effort, most_again: MOST_AGAIN };
-            finer = fewer_elements(finer, &optimiser, floor, None, search, watch, stages)?;
+            finer = fewer_elements(finer, &optimiser, floor, limit, search, watch, stages)?;
         }
     }
     Ok(finer)

@@ -2,6 +2,7 @@
 
 use super::{symmetrise, Setting};
 use crate::error::{Error, Result};
+use crate::generate::finish::Elements;
 use crate::generate::watch::Watch;
 use crate::generate::{blocks, steps_1_to_9};
 use crate::mesh::{scaled_jacobian_ceiling, QuadMesh};
@@ -68,7 +69,7 @@ pub(super) fn part_mesh(
         }
         blocks::refine(&mut request, boundary);
     }
-    let result = result.and_then(|refined| {
+    let result = result.and_then(|Elements { refined, .. }| {
         let spent = refined.fine.quads.len();
         let mesh = match sector.bisector(group) {
             Some(own_group) => {
