@@ -10,9 +10,6 @@ use crate::refine::{self, Limits, Reach, Refusals, SizeLimit};
 use crate::smooth::{Care, Optimiser};
 use crate::stages::Stages;
 
-/// Most times that a mesh is coarsened: once smoothed as a whole it may allow what it did not before
-/// (not tried for a fast mesh).
-const PASSES: usize = 2;
 /// Quads above which a few elements that smoothing made worse are seen to before its result is judged.
 const MANY: usize = 10_000;
 
@@ -20,8 +17,10 @@ const MANY: usize = 10_000;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Search {
     pub effort: Effort,
-    /// Quads above which a mesh is coarsened once only.
+    /// Quads above which a mesh is coarsened once only; a fast one always is.
     pub most_again: usize,
+    /// Most times that a mesh is coarsened: once smoothed as a whole it may allow what it did not before.
+    pub passes: usize,
 }
 
 /// `mesh`, which is valid, with as few elements as keep the scaled Jacobian at `floor` and the sizes within `limit`.
@@ -36,7 +35,8 @@ pub(super) fn fewer_elements(
 ) -> Result<QuadMesh> {
     let limits = Limits { sizes: limit, ..Limits::new(floor) };
     let mut refusals = Refusals::default();
-    let (passes, reach) = if search.effort == Effort::Fast { (1, Reach::Near) } else { (PASSES, Reach::Far) };
+    let (passes, reach) =
+        if search.effort == Effort::Fast { (1, Reach::Near) } else { (search.passes, Reach::Far) };
     for pass in 0..passes {
         if pass > 0 && mesh.quads.len() > search.most_again {
             break;

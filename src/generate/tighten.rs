@@ -14,8 +14,9 @@ use crate::refine::{divide_to_tolerance, tolerance_steps, SizeLimit};
 use crate::smooth::Optimiser;
 use crate::stages::Stages;
 
-/// Quads above which a divided mesh is coarsened once only. Up to here the limit of its work ends the first time, and
-/// again brings a third.
+/// Times that a divided mesh is coarsened at most: the limit of the work ends the first ones.
+const PASSES: usize = 4;
+/// Quads above which it is coarsened once only.
 const MOST_AGAIN: usize = 8000;
 
 /// Quads above which it is not coarsened: the limit of the work ends before one in twenty is gone.
@@ -76,7 +77,7 @@ pub(super) fn tightened(
         note(stages, &optimiser, &finer, "tighten");
         if sizes.is_some() && finer.quads.len() <= MOST_COARSENED {
             let effort = if step == tolerances.asked() { options.effort } else { Effort::Fast };
-            let search = Search { effort, most_again: MOST_AGAIN };
+            let search = Search { effort, most_again: MOST_AGAIN, passes: PASSES };
             finer = fewer_elements(finer, &optimiser, floor, limit, search, watch, stages)?;
         }
     }
