@@ -17,7 +17,7 @@ use crate::stages::Stages;
 /// Times that a divided mesh is coarsened at most: the limit of the work ends the first ones.
 const PASSES: usize = 4;
 /// Quads above which it is coarsened once only.
-const MOST_AGAIN: usize = 8000;
+const MOST_AGAIN: usize = 10_000;
 
 /// Quads above which it is not coarsened: the limit of the work ends before one in twenty is gone.
 const MOST_COARSENED: usize = 25_000;

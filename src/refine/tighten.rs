@@ -20,8 +20,12 @@ const FIRST_FOR_SHAPE: f64 = 1.2;
 const FEW_EDGES: f64 = 100.0;
 /// Angle, in radians, by which the boundary turns along an edge that the shape takes.
 const TURN: f64 = 0.9;
-/// Edges that a tolerance takes at least for each one of the next looser; twice as many on smooth curves.
+/// Edges that a tolerance takes at least, ...
 const WORTH: f64 = 1.4;
+/// ... and at most, for each one of the next looser; up to twice as many on smooth curves.
+const MOST_STEP: f64 = 2.2;
+/// Times that a step is made shorter.
+const SHORTENINGS: usize = 5;
 /// Most tolerances one after the other.
 const MOST_STEPS: usize = 30;
 /// Most divisions for one tolerance: on curves with knots more edges may be worse ones.
@@ -54,9 +58,18 @@ pub fn tolerance_steps(boundary: &Boundary, tolerance: &BoundaryTolerance) -> Re
     let factor = (halvings / halvings.ceil() * growth(&BoundaryError::new(*tolerance))).exp2();
     let mut looser = *tolerance;
     for _ in 0..MOST_STEPS {
-        looser.value *= factor;
-        let now = count(&looser)?;
-        // Curves with knots lose fewer edges than smooth ones: what loses few is passed over.
+        let (mut exponent, mut next, mut now) = (1.0, looser, before);
+        for _ in 0..SHORTENINGS {
+            next.value = looser.value * factor.powf(exponent);
+            now = count(&next)?;
+            if now * MOST_STEP >= before {
+                break;
+            }
+            // Knots take edges that a little more tolerance does without.
+            exponent *= 0.5;
+        }
+        looser = next;
+        // Curves with knots may lose fewer edges than smooth ones, too: what loses few is passed over.
         if now <= few || now * WORTH < before {
             steps.push(looser);
             before = now;
