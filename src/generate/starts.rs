@@ -4,6 +4,7 @@
 //! another field lays out anew.
 
 use super::one_mesh;
+use super::tighten::TIGHTEN;
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::mesh::{scaled_jacobian_ceiling, HighOrderMesh};
@@ -14,6 +15,8 @@ use crate::stages::Stages;
 
 /// Share of the domain's best possible scaled Jacobian below which an element is poor: 4 meshes of 538 have one.
 const POOR: f64 = 0.6;
+/// The same where another start takes long.
+const BAD: f64 = 0.3;
 /// Elements above which a mesh is kept for its poor element: another takes as long again.
 const MOST_AGAIN: usize = 1500;
 
@@ -51,9 +54,9 @@ impl Rank {
         }
     }
 
-    /// Whether no other start is worth its time.
-    fn will_do(&self, effort: Effort) -> bool {
-        effort != Effort::Best && (self.poor == 0 || self.elements > MOST_AGAIN)
+    /// Whether no other start is worth its time; it is worth less if it takes `long`.
+    fn will_do(&self, effort: Effort, long: bool) -> bool {
+        effort != Effort::Best && (self.poor == 0 || self.elements > MOST_AGAIN || long)
     }
 }
 
@@ -62,6 +65,19 @@ struct Made {
     mesh: HighOrderMesh,
     rank: Rank,
     stages: Stages,
+}
+
+impl Made {
+    /// Whether the tolerance was met in steps, which takes longest.
+    fn takes_long(&self) -> bool {
+        self.stages.rounds.iter().any(|round| round.action == TIGHTEN)
+    }
+}
+
+/// Least scaled Jacobian of a run's mesh as a share of the domain's best possible one.
+fn share(stages: &Stages) -> f64 {
+    let least = stages.rounds.last().map_or(0.0, |round| round.scaled_jacobian);
+    least / stages.boundary.as_ref().map_or(1.0, scaled_jacobian_ceiling)
 }
 
 /// The best mesh of the starts that the effort allows; `stages` has what led to it, and the seconds of all. Where no
@@ -101,7 +117,7 @@ pub(super) fn best_of_starts(
             }
         }
         let enough = match &best {
-            Some(best) => best.rank.will_do(options.effort),
+            Some(best) => best.rank.will_do(options.effort, best.takes_long() && share(&best.stages) >= BAD),
             // What two fields on four base meshes each did not make possible hardly is.
             None => options.effort != Effort::Best && k > 0,
         };

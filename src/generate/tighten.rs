@@ -14,6 +14,8 @@ use crate::refine::{divide_to_tolerance, tolerance_steps, SizeLimit};
 use crate::smooth::Optimiser;
 use crate::stages::Stages;
 
+/// What division for a tolerance is called in [`Round::action`](crate::stages::Round::action).
+pub(super) const TIGHTEN: &str = "tighten";
 /// Times that a divided mesh is coarsened at most: the limit of the work ends the first ones.
 const PASSES: usize = 4;
 /// Quads above which it is coarsened once only.
@@ -74,7 +76,7 @@ pub(super) fn tightened(
         finer = watch.run(stages, Stage::Refine, |_| {
             divide_to_tolerance(finer, boundary, &error, options.order, options.max_elements)
         })?;
-        note(stages, &optimiser, &finer, "tighten");
+        note(stages, &optimiser, &finer, TIGHTEN);
         if sizes.is_some() && finer.quads.len() <= MOST_COARSENED {
             let effort = if step == tolerances.asked() { options.effort } else { Effort::Fast };
             let search = Search { effort, most_again: MOST_AGAIN, passes: PASSES };
