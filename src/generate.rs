@@ -36,6 +36,11 @@ const GIVEN_ATTEMPTS: usize = 2;
 /// quadrature points, and the last optimisation may use all of what they allow.
 const TOLERANCE_AIM: f64 = 0.97;
 
+/// What the stages aim at for `tolerance`; the final mesh is measured against the tolerance itself.
+fn aim(tolerance: &BoundaryTolerance) -> BoundaryTolerance {
+    BoundaryTolerance { value: TOLERANCE_AIM * tolerance.value, ..*tolerance }
+}
+
 /// Meshes `domain`. `stages` keeps what every stage made, also on failure.
 ///
 /// # Errors
@@ -143,8 +148,7 @@ fn steps_1_to_9(
     // Steps 1 to 3: base mesh, cross field, singularities; refined until the index theorem holds.
     let field = blocks::field(boundary, given, options, false, request, watch, stages)?;
 
-    // What the stages aim at; the final mesh is measured against the tolerance itself.
-    let aim = &BoundaryTolerance { value: TOLERANCE_AIM * tolerance.value, ..*tolerance };
+    let aim = &aim(tolerance);
 
     // Steps 4 to 6: separatrices, quad-dominant regions, repair.
     let mut blocks = blocks::layout(boundary, options, aim, &field, watch, stages);

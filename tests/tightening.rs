@@ -52,7 +52,7 @@ fn each_step_takes_about_twice_the_edges_of_the_last() {
 }
 
 #[test]
-fn divided_elements_keep_the_tolerance_and_their_shape() {
+fn divided_elements_keep_the_tolerance_and_are_valid() {
     let flat = flat();
     for (b, mesh) in [disc_o_grid(0.6), (flat.clone(), o_grid(&flat, 0.6))] {
         for (order, value) in [(2, 1e-6), (3, 1e-8), (5, 1e-10)] {

@@ -27,7 +27,7 @@ from poisson import basis, lobatto, scaled_jacobian, solve
 ROOT = Path(__file__).resolve().parents[2]
 ORDERS = (4, 5, 6, 7, 8, 9, 10)
 # quadrel's only: Gmsh's quadrilaterals end at order 10.
-HIGH_ORDERS = (12, 13, 14, 16)
+HIGH_ORDERS = (11, 12, 13, 14, 16)
 TOLERANCES = (1e-4, 1e-6, 1e-8)
 # Largest sizes as shares of the diagonal. Gmsh takes them at the points of the curves and, with the second list, as
 # many elements as that a full turn.

@@ -9,13 +9,12 @@ use super::size_samples::SizeSamples;
 use super::Triangulation;
 use crate::domain::{Boundary, Place};
 use crate::error::Result;
+use crate::numerics::tolerances::EDGE_TURN;
 use crate::numerics::{cross, Point};
 use crate::options::Options;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Most that a boundary edge should turn, in radians, while it is not yet coarsened.
-const EDGE_TURN: f64 = 0.9;
 /// Size of an element at a chain that is one edge, relative to the chain's length.
 const CHAIN_SHARE: f64 = 1.0;
 /// Growth of the size with the distance from the boundary.

@@ -1,14 +1,14 @@
 //! After coarsening: the tolerance asked for, vertices at joints and knots, and elements of the sizes asked for.
 
+use super::aim;
 use super::rounds::{note, Refined, TOO_LARGE};
 use super::smooth_edges::smooth_edges;
 use super::tighten::{tightened, Tolerances};
 use super::watch::Watch;
-use super::TOLERANCE_AIM;
 use crate::base_mesh::ElementSize;
 use crate::domain::Boundary;
 use crate::error::{Error, Result};
-use crate::mesh::{scaled_jacobian_ceiling, BoundaryTolerance, QuadMesh};
+use crate::mesh::{scaled_jacobian_ceiling, QuadMesh};
 use crate::numerics::tolerances::ORDER_TIE;
 use crate::numerics::Point;
 use crate::options::{Options, Subdivision};
@@ -37,9 +37,7 @@ pub(super) fn finished(
 ) -> Result<QuadMesh> {
     let Elements { refined, sizes } = elements;
     let mut mesh = tightened(&refined.coarse, boundary, options, tolerances, Some(sizes), watch, stages)?;
-    let asked = *tolerances.asked();
-    let aim = BoundaryTolerance { value: TOLERANCE_AIM * asked.value, ..asked };
-    let optimiser = Optimiser::new(boundary, options.order, Some(aim));
+    let optimiser = Optimiser::new(boundary, options.order, Some(aim(tolerances.asked())));
     let floor = options.quality_floor * scaled_jacobian_ceiling(boundary);
     let coarsens = options.subdivision == Subdivision::EqualError;
     let allowed = |p| sizes.allowed(p);

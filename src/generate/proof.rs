@@ -4,9 +4,9 @@
 //! exact curves. A few elements that are valid by so little that the two disagree are optimised where they are, or their
 //! chords divided, rather than that the mesh is given up.
 
+use super::aim;
 use super::rounds::note;
 use super::watch::Watch;
-use super::TOLERANCE_AIM;
 use crate::domain::{Boundary, Domain};
 use crate::error::{Error, Result};
 use crate::mesh::{unproven, BoundaryTolerance, DomainCurve, HighOrderMesh, QuadMesh};
@@ -39,8 +39,7 @@ pub(super) fn proven(
     if !matches!(first, Err(Error::InvalidElement { .. })) {
         return first;
     }
-    let aim = BoundaryTolerance { value: TOLERANCE_AIM * tolerance.value, ..*tolerance };
-    let optimiser = Optimiser::new(boundary, options.order, Some(aim));
+    let optimiser = Optimiser::new(boundary, options.order, Some(aim(tolerance)));
     let curve = DomainCurve { boundary, domain };
     let all = |mesh: &QuadMesh| 0..mesh.quads.len() as u32;
     let mut mesh = mesh.clone();

@@ -44,19 +44,13 @@ struct Rank {
 impl Rank {
     fn of(mesh: &HighOrderMesh, stages: &Stages) -> Self {
         let in_ties = |x: f64| (x / ORDER_TIE).round() as i64;
-        let least = stages.rounds.last().map_or(0.0, |round| round.scaled_jacobian);
-        let ceiling = stages.boundary.as_ref().map_or(1.0, scaled_jacobian_ceiling);
+        let [least, ceiling] = shape(stages);
         Rank {
             missing: stages.symmetry.map_or(0, |s| s.domain.order().saturating_sub(s.mesh.order())),
             poor: in_ties(POOR * ceiling - least).max(0),
             elements: mesh.elements.len(),
             shape: in_ties(-least),
         }
-    }
-
-    /// Whether no other start is worth its time; it is worth less if it takes `long`.
-    fn will_do(&self, effort: Effort, long: bool) -> bool {
-        effort != Effort::Best && (self.poor == 0 || self.elements > MOST_AGAIN || long)
     }
 }
 
@@ -68,16 +62,20 @@ struct Made {
 }
 
 impl Made {
-    /// Whether the tolerance was met in steps, which takes longest.
-    fn takes_long(&self) -> bool {
-        self.stages.rounds.iter().any(|round| round.action == TIGHTEN)
+    /// Whether no other start is worth its time.
+    fn will_do(&self, effort: Effort) -> bool {
+        let [least, ceiling] = shape(&self.stages);
+        // A tolerance that is met in steps takes longest.
+        let long = self.stages.rounds.iter().any(|round| round.action == TIGHTEN);
+        let fair = self.rank.poor == 0 || long && least >= BAD * ceiling;
+        effort != Effort::Best && (fair || self.rank.elements > MOST_AGAIN)
     }
 }
 
-/// Least scaled Jacobian of a run's mesh as a share of the domain's best possible one.
-fn share(stages: &Stages) -> f64 {
+/// The least scaled Jacobian of a run's mesh, and the domain's best possible one.
+fn shape(stages: &Stages) -> [f64; 2] {
     let least = stages.rounds.last().map_or(0.0, |round| round.scaled_jacobian);
-    least / stages.boundary.as_ref().map_or(1.0, scaled_jacobian_ceiling)
+    [least, stages.boundary.as_ref().map_or(1.0, scaled_jacobian_ceiling)]
 }
 
 /// The best mesh of the starts that the effort allows; `stages` has what led to it, and the seconds of all. Where no
@@ -117,7 +115,7 @@ pub(super) fn best_of_starts(
             }
         }
         let enough = match &best {
-            Some(best) => best.rank.will_do(options.effort, best.takes_long() && share(&best.stages) >= BAD),
+            Some(best) => best.will_do(options.effort),
             // What two fields on four base meshes each did not make possible hardly is.
             None => options.effort != Effort::Best && k > 0,
         };

@@ -3,17 +3,15 @@
 mod bar;
 mod part;
 
+use super::aim;
 use super::finish::{follow_waves, MOST_FOLLOWING};
 use super::rounds::{note, Refined};
 use super::smooth_edges::smooth_edges;
 use super::tighten::{tightened, Tolerances};
 use super::watch::Watch;
-use super::TOLERANCE_AIM;
 use crate::domain::{Boundary, Domain};
 use crate::error::Result;
-use crate::mesh::{
-    scaled_jacobian_ceiling, BoundaryTolerance, DomainCurve, ExactCurve, HighOrderMesh, QuadMesh,
-};
+use crate::mesh::{scaled_jacobian_ceiling, DomainCurve, ExactCurve, HighOrderMesh, QuadMesh};
 use crate::numerics::tolerances::ORDER_TIE;
 use crate::numerics::Point;
 use crate::options::{Options, Subdivision};
@@ -134,9 +132,7 @@ pub(super) fn symmetrise(
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<(Symmetrised, Option<Asymmetry>)> {
-    let first = *setting.tolerances.first();
-    let aim = BoundaryTolerance { value: TOLERANCE_AIM * first.value, ..first };
-    let optimiser = Optimiser::new(boundary, setting.options.order, Some(aim));
+    let optimiser = Optimiser::new(boundary, setting.options.order, Some(aim(setting.tolerances.first())));
     let quality = optimiser.quality(&direct.coarse);
     let bar = Bar::of(&quality, setting.options, boundary);
     let mut best = Symmetrised { mesh: direct.coarse.clone(), elements: vec![0] };

@@ -1,9 +1,9 @@
 //! Tolerances that take many more edges than the shape does: met by division of a mesh that keeps a looser one.
 
+use super::aim;
 use super::fewer_elements::{fewer_elements, Search};
 use super::rounds::note;
 use super::watch::Watch;
-use super::TOLERANCE_AIM;
 use crate::base_mesh::ElementSize;
 use crate::domain::Boundary;
 use crate::error::Result;
@@ -16,12 +16,12 @@ use crate::stages::Stages;
 
 /// What division for a tolerance is called in [`Round::action`](crate::stages::Round::action).
 pub(super) const TIGHTEN: &str = "tighten";
+
 /// Times that a divided mesh is coarsened at most: the limit of the work ends the first ones.
 const PASSES: usize = 4;
 /// Quads above which it is coarsened once only.
 const MOST_AGAIN: usize = 10_000;
-
-/// Quads above which it is not coarsened: the limit of the work ends before one in twenty is gone.
+/// Quads above which it is not coarsened at all: the limit of the work ends before one in twenty is gone.
 const MOST_COARSENED: usize = 25_000;
 
 /// The tolerances that a mesh keeps one after the other, each a multiple of the next.
@@ -70,7 +70,7 @@ pub(super) fn tightened(
     // One size for all divides the finished mesh.
     let limit = options.element_size.as_ref().map(|_| SizeLimit::new(&allowed));
     for step in &tolerances.steps[1..] {
-        let aim = BoundaryTolerance { value: TOLERANCE_AIM * step.value, ..*step };
+        let aim = aim(step);
         let optimiser = Optimiser::new(boundary, options.order, Some(aim));
         let error = BoundaryError::new(aim);
         finer = watch.run(stages, Stage::Refine, |_| {

@@ -49,6 +49,12 @@ pub(super) fn chord_parts(mesh: &QuadMesh, wanted: &[u32]) -> Vec<u32> {
     parts
 }
 
+/// Quads of `mesh` divided into so many parts.
+pub(super) fn divided_quads(mesh: &QuadMesh, parts: &[u32]) -> f64 {
+    let own = |edges: &[u32; 4]| f64::from(parts[edges[0] as usize]) * f64::from(parts[edges[1] as usize]);
+    mesh.quad_edges.iter().map(own).sum()
+}
+
 struct Division<'a> {
     mesh: &'a QuadMesh,
     boundary: &'a Boundary,

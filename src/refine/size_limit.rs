@@ -1,6 +1,6 @@
 //! The largest element size that the caller allows, and the division of what is larger.
 
-use super::divide::{chord_parts, divide_chords};
+use super::divide::{chord_parts, divide_chords, divided_quads};
 use super::resolve::resolved;
 use super::split_chords;
 use crate::domain::Boundary;
@@ -105,9 +105,7 @@ impl<'a> SizeLimit<'a> {
                 }
             }
             let parts = chord_parts(&mesh, &wanted);
-            let count =
-                |edges: &[u32; 4]| f64::from(parts[edges[0] as usize]) * f64::from(parts[edges[1] as usize]);
-            let quads: f64 = mesh.quad_edges.iter().map(count).sum();
+            let quads = divided_quads(&mesh, &parts);
             if quads > most as f64 {
                 let reason = format!("the sizes asked for take {quads:.0} elements or more, above {most}");
                 return Err(Error::Layout { reason, at: None });

@@ -4,12 +4,13 @@
 //! domain, and untangling them may fail. Few elements for a tolerance at which the shape decides are soon valid, and
 //! parts of valid elements stay so: their boundaries move by no more than the looser tolerance.
 
-use super::divide::chord_parts;
+use super::divide::{chord_parts, divided_quads};
 use super::pieces::growth;
 use super::{divide_chords, least_pieces, subdivide};
 use crate::domain::{Boundary, Chain, Span};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::mesh::{BoundaryError, BoundaryTolerance, Edge, QuadMesh};
+use crate::numerics::tolerances::EDGE_TURN;
 
 /// Edges that the tolerance takes for each one that the shape takes above which a looser one comes first. At order 5
 /// and a relative tolerance of 1e-5 domains have 0.5 to 1.
@@ -18,11 +19,9 @@ const MOST_FOR_SHAPE: f64 = 2.0;
 const FIRST_FOR_SHAPE: f64 = 1.2;
 /// Edges of all chains that are few however many the shape takes.
 const FEW_EDGES: f64 = 100.0;
-/// Angle, in radians, by which the boundary turns along an edge that the shape takes.
-const TURN: f64 = 0.9;
-/// Edges that a tolerance takes at least, ...
+/// Least number of edges for each one of the next looser tolerance: a step to fewer is not worth its work.
 const WORTH: f64 = 1.4;
-/// ... and at most, for each one of the next looser; up to twice as many on smooth curves.
+/// Most of them: a little more than the two that steps are made for on smooth curves.
 const MOST_STEP: f64 = 2.2;
 /// Times that a step is made shorter.
 const SHORTENINGS: usize = 5;
@@ -87,7 +86,7 @@ fn edges_for_shape(chain: &Chain) -> f64 {
     let samples = &chain.samples;
     let turn: f64 =
         samples.windows(2).map(|w| 0.5 * (w[0].curvature + w[1].curvature).abs() * (w[1].s - w[0].s)).sum();
-    1.0 + turn / TURN
+    1.0 + turn / EDGE_TURN
 }
 
 /// `mesh` with chords divided until every boundary edge keeps the tolerance: into equal parts, which smooth curves
@@ -95,8 +94,8 @@ fn edges_for_shape(chain: &Chain) -> f64 {
 /// [`divide_chords`].
 ///
 /// # Errors
-/// [`Error::Tolerance`] with the worst edge's place when both take more than `most` quads; [`Error::Layout`] when the
-/// mesh is defective.
+/// [`Error::Tolerance`](crate::Error::Tolerance) with the worst edge's place when both take more than `most` quads;
+/// [`Error::Layout`](crate::Error::Layout) when the mesh is defective.
 pub fn divide_to_tolerance(
     mesh: QuadMesh,
     boundary: &Boundary,
@@ -104,47 +103,34 @@ pub fn divide_to_tolerance(
     order: usize,
     most: usize,
 ) -> Result<QuadMesh> {
-    let equal = divide_equally(mesh.clone(), boundary, error, order, most);
-    match &equal {
-        Ok(equal) if equal.quads.len() > MOST_COMPARED => {}
-        Ok(equal) => {
-            if let Ok(halved) = subdivide(mesh, boundary, error, equal.quads.len() - 1) {
-                return Ok(halved);
-            }
-        }
-        Err(_) => return subdivide(mesh, boundary, error, most).or(equal),
+    match divide_equally(mesh.clone(), boundary, error, order, most)? {
+        None => subdivide(mesh, boundary, error, most),
+        Some(equal) if equal.quads.len() > MOST_COMPARED => Ok(equal),
+        Some(equal) => Ok(subdivide(mesh, boundary, error, equal.quads.len() - 1).unwrap_or(equal)),
     }
-    equal
 }
 
-/// The same into equal parts.
+/// The same into equal parts; `None` if that takes more than `most` quads.
 fn divide_equally(
     mut mesh: QuadMesh,
     boundary: &Boundary,
     error: &BoundaryError,
     order: usize,
     most: usize,
-) -> Result<QuadMesh> {
-    for round in 0.. {
-        let ratio = |e: &Edge| e.span.map_or(0.0, |span| error.ratio(boundary, span));
-        let worst = mesh.edges.iter().max_by(|a, b| ratio(a).total_cmp(&ratio(b)));
-        let Some(span) = worst.filter(|e| ratio(e) > 1.0).and_then(|e| e.span) else { break };
-        let refusal = Error::Tolerance {
-            error: error.of_span(boundary, span),
-            tolerance: error.tolerance.value,
-            at: boundary.chains[span.chain as usize].point(0.5 * (span.start + span.end)),
-        };
-        let wanted: Vec<u32> =
-            mesh.edges.iter().map(|e| e.span.map_or(1, |span| parts(span, boundary, error))).collect();
+) -> Result<Option<QuadMesh>> {
+    for _ in 0..ROUNDS {
+        let wanted = |e: &Edge| e.span.map_or(1, |span| parts(span, boundary, error));
+        let wanted: Vec<u32> = mesh.edges.iter().map(wanted).collect();
+        if wanted.iter().all(|n| *n == 1) {
+            return Ok(Some(mesh));
+        }
         let parts = chord_parts(&mesh, &wanted);
-        let count =
-            |edges: &[u32; 4]| f64::from(parts[edges[0] as usize]) * f64::from(parts[edges[1] as usize]);
-        if round == ROUNDS || mesh.quad_edges.iter().map(count).sum::<f64>() > most as f64 {
-            return Err(refusal);
+        if divided_quads(&mesh, &parts) > most as f64 {
+            break;
         }
         mesh = divide_chords(&mesh, boundary, &parts, order)?;
     }
-    Ok(mesh)
+    Ok(None)
 }
 
 /// Equal parts of `span` of which each keeps the tolerance.
