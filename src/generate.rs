@@ -23,6 +23,7 @@ use crate::options::Options;
 use crate::progress::Stage;
 use crate::stages::Stages;
 use finish::Elements;
+use starts::Start;
 use tighten::Tolerances;
 use watch::Watch;
 
@@ -63,8 +64,8 @@ pub fn generate(domain: &Domain, options: &Options, stages: &mut Stages) -> Resu
     starts::best_of_starts(domain, options, stages)
 }
 
-/// One mesh; its base mesh is refined `finer` times before anything is tried.
-fn one_mesh(domain: &Domain, options: &Options, finer: usize, stages: &mut Stages) -> Result<HighOrderMesh> {
+/// One mesh, begun as `start` says.
+fn one_mesh(domain: &Domain, options: &Options, start: Start, stages: &mut Stages) -> Result<HighOrderMesh> {
     *stages = Stages::default();
     let mut watch = Watch::new(options);
 
@@ -75,7 +76,8 @@ fn one_mesh(domain: &Domain, options: &Options, finer: usize, stages: &mut Stage
     })?;
     stages.boundary = Some(boundary.clone());
     let tolerances = watch.run(stages, Stage::Domain, |_| {
-        Tolerances::new(options, &boundary).map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)))
+        Tolerances::new(options, &boundary, start.sooner)
+            .map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)))
     })?;
     let group = watch.run(stages, Stage::Domain, |stages| {
         symmetric::wanted(&boundary, &DomainCurve { boundary: &boundary, domain }, options, stages)
@@ -90,7 +92,7 @@ fn one_mesh(domain: &Domain, options: &Options, finer: usize, stages: &mut Stage
 
     let mut failure = None;
     let mut request = blocks::first_request(options, &boundary);
-    for _ in 0..finer {
+    for _ in 0..start.finer {
         blocks::refine(&mut request, &boundary);
     }
     for attempt in 1..=attempts {
@@ -98,7 +100,7 @@ fn one_mesh(domain: &Domain, options: &Options, finer: usize, stages: &mut Stage
         // The stages speak of places in the canonical frame.
         let given = given.as_ref();
         let elements =
-            steps_1_to_9(&boundary, given, options, tolerances.first(), &mut request, &mut watch, stages)
+            steps_1_to_9(&boundary, given, options, &tolerances.first, &mut request, &mut watch, stages)
                 .map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)));
         // The proof: curved elements of order N with positive Jacobians, on the exact curves.
         let result = elements.and_then(|elements| {
@@ -119,7 +121,7 @@ fn one_mesh(domain: &Domain, options: &Options, finer: usize, stages: &mut Stage
             }
             let finished = finish::finished(&elements, &boundary, options, &tolerances, &mut watch, stages);
             let mesh = finished.map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)))?;
-            proof::proven(&mesh, &boundary, domain, options, tolerances.asked(), &mut watch, stages)
+            proof::proven(&mesh, &boundary, domain, options, &tolerances.asked, &mut watch, stages)
         });
         match result {
             Ok(mesh) => return Ok(mesh),

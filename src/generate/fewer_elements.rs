@@ -13,15 +13,11 @@ use crate::stages::Stages;
 /// Quads above which a few elements that smoothing made worse are seen to before its result is judged.
 const MANY: usize = 10_000;
 
-/// How hard to look for elements that can go.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Search {
-    pub effort: Effort,
-    /// Quads above which a mesh is coarsened once only; a fast one always is.
-    pub most_again: usize,
-    /// Most times that a mesh is coarsened: once smoothed as a whole it may allow what it did not before.
-    pub passes: usize,
-}
+/// Times that a mesh is coarsened at most: once smoothed as a whole it may allow what it did not before. A third time
+/// brings nothing.
+const PASSES: usize = 2;
+/// Quads above which a mesh is coarsened once only: again takes as long as the first time and brings a percent.
+const MOST_AGAIN: usize = 1500;
 
 /// `mesh`, which is valid, with as few elements as keep the scaled Jacobian at `floor` and the sizes within `limit`.
 pub(super) fn fewer_elements(
@@ -29,16 +25,15 @@ pub(super) fn fewer_elements(
     optimiser: &Optimiser,
     floor: f64,
     limit: Option<SizeLimit>,
-    search: Search,
+    effort: Effort,
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<QuadMesh> {
     let limits = Limits { sizes: limit, ..Limits::new(floor) };
     let mut refusals = Refusals::default();
-    let (passes, reach) =
-        if search.effort == Effort::Fast { (1, Reach::Near) } else { (search.passes, Reach::Far) };
+    let (passes, reach) = if effort == Effort::Fast { (1, Reach::Near) } else { (PASSES, Reach::Far) };
     for pass in 0..passes {
-        if pass > 0 && mesh.quads.len() > search.most_again {
+        if pass > 0 && mesh.quads.len() > MOST_AGAIN {
             break;
         }
         let progress = watch.coarsening();

@@ -36,8 +36,8 @@ pub(super) fn finished(
     stages: &mut Stages,
 ) -> Result<QuadMesh> {
     let Elements { refined, sizes } = elements;
-    let mut mesh = tightened(&refined.coarse, boundary, options, tolerances, Some(sizes), watch, stages)?;
-    let optimiser = Optimiser::new(boundary, options.order, Some(aim(tolerances.asked())));
+    let mut mesh = tightened(&refined.coarse, boundary, options, tolerances, false, watch, stages)?;
+    let optimiser = Optimiser::new(boundary, options.order, Some(aim(&tolerances.asked)));
     let floor = options.quality_floor * scaled_jacobian_ceiling(boundary);
     let coarsens = options.subdivision == Subdivision::EqualError;
     let allowed = |p| sizes.allowed(p);

@@ -1,6 +1,6 @@
 //! Steps 7 to 9: subdivide, smooth, coarsen; repeat until every boundary edge meets the tolerance.
 
-use super::fewer_elements::{fewer_elements, Search};
+use super::fewer_elements::fewer_elements;
 use super::watch::Watch;
 use crate::base_mesh::ElementSize;
 use crate::domain::{Boundary, BoundaryPoint, Place};
@@ -30,10 +30,6 @@ const LARGE: usize = 1500;
 const WORTH: f64 = 0.7;
 /// Multiple of coarsening's floor to which a mesh is smoothed before it.
 const AMPLE: f64 = 1.05;
-/// Times that a mesh is coarsened at most: a third time brings nothing.
-const PASSES: usize = 2;
-/// Quads above which a mesh is coarsened once only: again takes as long as the first time and brings a percent.
-const MOST_AGAIN: usize = 1500;
 /// Share of inverted elements up to which the edges of a large mesh's are divided, too: chords are long there.
 const FEW: f64 = 1e-3;
 /// Sizes in those that the caller's function allows above which elements are divided once more after smoothing,
@@ -142,8 +138,7 @@ pub(super) fn refine_and_smooth(
     }
     let fine = mesh.clone();
     if coarsens && watch.work <= most_work(&mesh) {
-        let search = Search { effort: options.effort, most_again: MOST_AGAIN, passes: PASSES };
-        mesh = fewer_elements(mesh, &optimiser, floor, limit, search, watch, stages)?;
+        mesh = fewer_elements(mesh, &optimiser, floor, limit, options.effort, watch, stages)?;
     }
     Ok(Refined { coarse: mesh, fine })
 }

@@ -4,7 +4,7 @@
 //! another field lays out anew.
 
 use super::one_mesh;
-use super::tighten::TIGHTEN;
+use super::tighten::{Tolerances, DIVIDED};
 use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::mesh::{scaled_jacobian_ceiling, HighOrderMesh};
@@ -15,19 +15,34 @@ use crate::stages::Stages;
 
 /// Share of the domain's best possible scaled Jacobian below which an element is poor: 4 meshes of 538 have one.
 const POOR: f64 = 0.6;
-/// The same where another start takes long.
+/// The same where boundary edges were divided inside their elements.
 const BAD: f64 = 0.3;
 /// Elements above which a mesh is kept for its poor element: another takes as long again.
 const MOST_AGAIN: usize = 1500;
 
-/// Starts tried: the field asked for and the other one, each on the usual base mesh and on the next finer one.
-fn starts(options: &Options) -> Vec<(FieldMethod, usize)> {
+/// How a mesh is begun.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Start {
+    field: FieldMethod,
+    /// Times that the base mesh is refined before anything is tried.
+    pub finer: usize,
+    /// Whether edges are divided at the boundary where another mesh would have them from the layout on.
+    pub sooner: bool,
+}
+
+/// Starts tried: the field asked for and the other one, each on the usual base mesh and on the next finer one; and,
+/// second, elements for fewer edges, divided at the boundary.
+fn starts(options: &Options) -> Vec<Start> {
     let other = match options.field {
         FieldMethod::Diffused => FieldMethod::Harmonic,
         FieldMethod::Harmonic => FieldMethod::Diffused,
     };
     let finer: &[usize] = if options.base_triangulation.is_some() { &[0] } else { &[0, 1] };
-    finer.iter().flat_map(|finer| [options.field, other].map(|field| (field, *finer))).collect()
+    let both =
+        |finer: &usize| [options.field, other].map(|field| Start { field, finer: *finer, sooner: false });
+    let mut starts: Vec<Start> = finer.iter().flat_map(both).collect();
+    starts.insert(1, Start { sooner: true, ..starts[0] });
+    starts
 }
 
 /// What meshes are compared by. Better is less, in this order; shapes that differ by rounding are equal.
@@ -65,9 +80,9 @@ impl Made {
     /// Whether no other start is worth its time.
     fn will_do(&self, effort: Effort) -> bool {
         let [least, ceiling] = shape(&self.stages);
-        // A tolerance that is met in steps takes longest.
-        let long = self.stages.rounds.iter().any(|round| round.action == TIGHTEN);
-        let fair = self.rank.poor == 0 || long && least >= BAD * ceiling;
+        // Where edges had to be divided at the boundary, another layout does not make their elements better.
+        let divided = self.stages.rounds.iter().any(|round| round.action == DIVIDED);
+        let fair = self.rank.poor == 0 || divided && least >= BAD * ceiling;
         effort != Effort::Best && (fair || self.rank.elements > MOST_AGAIN)
     }
 }
@@ -76,6 +91,13 @@ impl Made {
 fn shape(stages: &Stages) -> [f64; 2] {
     let least = stages.rounds.last().map_or(0.0, |round| round.scaled_jacobian);
     [least, stages.boundary.as_ref().map_or(1.0, scaled_jacobian_ceiling)]
+}
+
+/// Whether a start that divides edges sooner is another one than what led to `stages`.
+fn is_another(options: &Options, stages: &Stages) -> bool {
+    let tolerances =
+        |sooner| stages.boundary.as_ref().and_then(|own| Tolerances::new(options, own, sooner).ok());
+    tolerances(true).zip(tolerances(false)).is_some_and(|(own, before)| own.first != before.first)
 }
 
 /// The best mesh of the starts that the effort allows; `stages` has what led to it, and the seconds of all. Where no
@@ -90,14 +112,21 @@ pub(super) fn best_of_starts(
     let mut best: Option<Made> = None;
     let mut failed: Option<(Error, Stages)> = None;
     let mut seconds = [0.0; 9];
-    for (k, (field, finer)) in starts.into_iter().enumerate() {
+    for (k, start) in starts.into_iter().enumerate() {
+        if start.sooner {
+            let fair = best.as_ref().is_some_and(|best| best.rank.poor == 0);
+            let known = best.as_ref().map(|best| &best.stages).or(failed.as_ref().map(|failed| &failed.1));
+            if fair || !known.is_some_and(|stages| is_another(options, stages)) {
+                continue;
+            }
+        }
         let whole = options.progress.clone();
         // Starts that nobody expected begin at the end.
         let share_of = move |share: f64| ((k as f64 + share) / count).min(1.0);
         let progress = Progress::new(move |stage, share| whole.report(stage, share_of(share)).is_ok());
         let mut own = Stages::default();
-        let own_options = Options { field, progress, ..options.clone() };
-        let made = one_mesh(domain, &own_options, finer, &mut own);
+        let own_options = Options { field: start.field, progress, ..options.clone() };
+        let made = one_mesh(domain, &own_options, start, &mut own);
         seconds.iter_mut().zip(own.seconds).for_each(|(all, own)| *all += own);
         match made {
             Ok(mesh) => {
@@ -117,7 +146,7 @@ pub(super) fn best_of_starts(
         let enough = match &best {
             Some(best) => best.will_do(options.effort),
             // What two fields on four base meshes each did not make possible hardly is.
-            None => options.effort != Effort::Best && k > 0,
+            None => options.effort != Effort::Best && k > 1,
         };
         if enough {
             break;

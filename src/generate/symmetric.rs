@@ -10,7 +10,7 @@ use super::smooth_edges::smooth_edges;
 use super::tighten::{tightened, Tolerances};
 use super::watch::Watch;
 use crate::domain::{Boundary, Domain};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::mesh::{scaled_jacobian_ceiling, DomainCurve, ExactCurve, HighOrderMesh, QuadMesh};
 use crate::numerics::tolerances::ORDER_TIE;
 use crate::numerics::Point;
@@ -101,10 +101,16 @@ pub(super) fn proven(
         symmetries: found.elements.iter().map(|e| &group.elements[*e]).collect(),
     };
     let Setting { options, tolerances } = setting;
+    let average_of = |mesh: QuadMesh| {
+        averaged(&mesh, boundary, group).filter(|own| own.elements == found.elements).map(|own| own.mesh)
+    };
     let proven =
-        tightened(&found.mesh, boundary, options, tolerances, None, watch, stages).and_then(|mesh| {
+        tightened(&found.mesh, boundary, options, tolerances, true, watch, stages).and_then(|mesh| {
+            // Smoothing moves images alike, but for rounding that it makes more of.
+            let even = if mesh.quads.len() == found.mesh.quads.len() { Some(mesh) } else { average_of(mesh) };
+            let mesh = even.ok_or(Error::Layout { reason: "division lost a symmetry".into(), at: None })?;
             let prove =
-                |_: &mut Stages| HighOrderMesh::with_curve(&mesh, boundary, &curve, tolerances.asked());
+                |_: &mut Stages| HighOrderMesh::with_curve(&mesh, boundary, &curve, &tolerances.asked);
             watch.run(stages, Stage::Mesh, prove)
         });
     match proven {
@@ -132,7 +138,7 @@ pub(super) fn symmetrise(
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<(Symmetrised, Option<Asymmetry>)> {
-    let optimiser = Optimiser::new(boundary, setting.options.order, Some(aim(setting.tolerances.first())));
+    let optimiser = Optimiser::new(boundary, setting.options.order, Some(aim(&setting.tolerances.first)));
     let quality = optimiser.quality(&direct.coarse);
     let bar = Bar::of(&quality, setting.options, boundary);
     let mut best = Symmetrised { mesh: direct.coarse.clone(), elements: vec![0] };

@@ -1,7 +1,7 @@
 //! The Coons map of a quad with its sides on the exact boundary, and its derivatives.
 
 use crate::domain::{Boundary, Chain, Span};
-use crate::mesh::{bubble_shape, QuadMesh};
+use crate::mesh::{bubble_shape, fit_bubbles, QuadMesh};
 use crate::numerics::{cross, legendre, Point, Vector};
 
 /// A side, walked in the direction of u or v.
@@ -75,5 +75,37 @@ impl<'a> CoonsMap<'a> {
         let along_u = mix(low.1, high.1, v) + (right.0 - left.0) - mix(b - a, c - d, v);
         let along_v = mix(left.1, right.1, u) + (high.0 - low.0) - mix(d - a, c - b, u);
         (Point::from(point), cross(along_u, along_v))
+    }
+}
+
+/// A quad's map seen with its corner `first` as the origin: that corner's side 0 is in front.
+pub(super) struct View<'a> {
+    map: CoonsMap<'a>,
+    pub quad: usize,
+    pub first: usize,
+}
+
+impl<'a> View<'a> {
+    pub fn new(mesh: &'a QuadMesh, boundary: &'a Boundary, quad: usize, first: usize) -> Self {
+        View { map: CoonsMap::new(mesh, boundary, quad), quad, first }
+    }
+
+    pub fn point(&self, [u, v]: [f64; 2]) -> Point {
+        let [u, v] = match self.first {
+            0 => [u, v],
+            1 => [1.0 - v, u],
+            2 => [1.0 - u, 1.0 - v],
+            _ => [v, 1.0 - u],
+        };
+        self.map.at(u, v).0
+    }
+
+    /// The shape of the line of the map between two places of the unit square, as `count` bubbles.
+    pub fn shape(&self, from: [f64; 2], to: [f64; 2], count: usize) -> Vec<Vector> {
+        let [a, b] = [from, to].map(|at| self.point(at));
+        fit_bubbles(count, |x| {
+            let t = 0.5 * (1.0 + x);
+            self.point([0, 1].map(|k| from[k] * (1.0 - t) + to[k] * t)) - (a + (b - a) * t)
+        })
     }
 }

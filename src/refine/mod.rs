@@ -8,8 +8,8 @@
 //! error (de Boor's equidistribution, *Good approximation by splines with variable knots*, 1973).
 //! [`place_by_halving`] is the paper's own rule (Algorithm 1), [`subdivide`] the same on a mesh.
 //!
-//! A tolerance that takes many more edges than the shape is met in [`tolerance_steps`]: a mesh for a looser one, divided
-//! by [`divide_to_tolerance`].
+//! Where the tolerance takes many more edges than the shape, elements are made for a looser [`first_tolerance`], get a
+//! row along the boundary ([`insert_layer`]), and are divided there only ([`divide_inside`]).
 //!
 //! [`coarsen`] takes a valid mesh that is finer than it need be and removes chords and diagonals,
 //! re-optimising round each, while the tolerance and the quality hold. [`OnChain`] moves boundary vertices to where
@@ -21,6 +21,8 @@ mod coarsen;
 mod coons;
 mod divide;
 mod halving;
+mod inside;
+mod layer;
 mod live;
 mod meet;
 mod merge;
@@ -47,6 +49,8 @@ mod waves;
 pub use coarsen::coarsen;
 pub use divide::divide_chords;
 pub use halving::place_by_halving;
+pub use inside::divide_inside;
+pub use layer::insert_layer;
 pub use meet::meet_tolerance;
 pub use pieces::least_pieces;
 pub use placement::{place_equal_error, Placement};
@@ -56,6 +60,6 @@ pub use split::split_chords;
 pub use strips::StripRemoval;
 pub use subdivide::subdivide;
 pub use thin::thin;
-pub use tighten::{divide_to_tolerance, tolerance_steps};
+pub use tighten::{divide_boundary, divide_wide, first_tolerance, layered};
 pub use to_breaks::{OnChain, ToBreak, Undo};
 pub use trial::{Limits, Reach};

@@ -45,7 +45,7 @@ impl<'a> SizeLimit<'a> {
     }
 
     /// For each quad its mean lengths along sides 0 and 1, in sizes allowed there.
-    fn ratios(&self, mesh: &QuadMesh) -> Vec<[f64; 2]> {
+    pub(super) fn ratios(&self, mesh: &QuadMesh) -> Vec<[f64; 2]> {
         let lengths: Vec<f64> = (0..mesh.edges.len()).map(|e| length(mesh, e)).collect();
         let ratio = |(q, edges): (u32, &[u32; 4])| {
             let allowed = self.of_quad(mesh, q);

@@ -1,12 +1,19 @@
-//! Tolerances that take many more edges than the shape does: a mesh for a looser one, and its division.
+//! Tolerances that take many more edges than the shape does: a mesh for a looser one, and its division at the boundary.
 //!
 //! A layout whose boundary edges are many times shorter than what they bound is a bundle of slivers that cross the
-//! domain, and untangling them may fail. Few elements for a tolerance at which the shape decides are soon valid, and
-//! parts of valid elements stay so: their boundaries move by no more than the looser tolerance.
+//! domain, and untangling them may fail. Few elements for a tolerance at which the shape decides are soon valid. Their
+//! boundary edges are divided where they break the tolerance, inside their elements, so that the mesh grows with the
+//! number of edges: two elements for each one more.
+//!
+//! *In:* a mesh and the tolerance. *Out:* wide elements divided with their chords ([`divide_wide`]), rows put along
+//! stretches that many edges of need division ([`layered`]), and edges divided once ([`divide_boundary`]): the last two
+//! in turn until nothing is left, with smoothing in between.
 
-use super::divide::{chord_parts, divided_quads};
-use super::pieces::growth;
-use super::{divide_chords, least_pieces, subdivide};
+use super::divide::divide_chords;
+use super::inside::divide_inside;
+use super::layer::insert_layer;
+use super::pieces::{greedy, growth};
+use super::{least_pieces, SizeLimit};
 use crate::domain::{Boundary, Chain, Span};
 use crate::error::Result;
 use crate::mesh::{BoundaryError, BoundaryTolerance, Edge, QuadMesh};
@@ -15,70 +22,65 @@ use crate::numerics::tolerances::EDGE_TURN;
 /// Edges that the tolerance takes for each one that the shape takes above which a looser one comes first. At order 5
 /// and a relative tolerance of 1e-5 domains have 0.5 to 1.
 const MOST_FOR_SHAPE: f64 = 2.0;
-/// The same that the first of several tolerances takes at most.
-const FIRST_FOR_SHAPE: f64 = 1.2;
-/// Edges of all chains that are few however many the shape takes.
-const FEW_EDGES: f64 = 100.0;
-/// Least number of edges for each one of the next looser tolerance: a step to fewer is not worth its work.
-const WORTH: f64 = 1.4;
-/// Most of them: a little more than the two that steps are made for on smooth curves.
-const MOST_STEP: f64 = 2.2;
-/// Times that a step is made shorter.
-const SHORTENINGS: usize = 5;
-/// Most tolerances one after the other.
-const MOST_STEPS: usize = 30;
-/// Most divisions for one tolerance: on curves with knots more edges may be worse ones.
-const ROUNDS: usize = 12;
-/// Quads above which equal parts are not compared with halving, which is made step by step.
-const MOST_COMPARED: usize = 50_000;
-/// Most parts of one edge in a division.
+/// The same that the looser one takes at most.
+const FIRST_FOR_SHAPE: f64 = 1.0;
+/// The same, both for one, where a mesh at once has come out poor.
+const SOONER_FOR_SHAPE: f64 = 0.8;
+/// Edges of all chains that a mesh has at once however few the shape takes ...
+const NOT_MANY_EDGES: f64 = 100.0;
+/// ... and that the looser tolerance may take.
+const FEW_EDGES: f64 = 12.0;
+/// Most steps in which the looser tolerance is found.
+const MOST_STEPS: usize = 60;
+/// Length of a boundary edge, in depths of its element, above which it is divided with its chord.
+const WIDE: f64 = 4.0;
+/// Rounds of that: parts of curved elements may be wide again.
+const WIDE_ROUNDS: usize = 3;
+/// Most parts of one edge that are counted: more are for several divisions.
 const MOST_PARTS: u32 = 64;
+/// Most equal parts that come of one division in three and the next: where it takes more, thirds of thirds will do.
+const MOST_EQUAL: u32 = 9;
+/// The common error of parts is looked for down to this share of the tolerance ...
+const LEAST_LEVEL: f64 = 100.0;
+/// ... to this ratio.
+const LEVEL_RATIO: f64 = 1.1;
 
-/// The tolerances that a mesh should keep one after the other, the last one `tolerance` itself: the only one unless it
-/// takes many more edges than the turns of the boundary do. Each takes about twice the edges of the one before.
+/// What elements are made for first: `tolerance` itself, or a looser one that takes few edges, if `tolerance` takes
+/// many more than the turns of the boundary do; `sooner`: if it takes about as many.
 ///
 /// # Errors
 /// As [`least_pieces`].
-pub fn tolerance_steps(boundary: &Boundary, tolerance: &BoundaryTolerance) -> Result<Vec<BoundaryTolerance>> {
+pub fn first_tolerance(
+    boundary: &Boundary,
+    tolerance: &BoundaryTolerance,
+    sooner: bool,
+) -> Result<BoundaryTolerance> {
     let shape: f64 = boundary.chains.iter().map(edges_for_shape).sum();
-    let [most, few] = [MOST_FOR_SHAPE, FIRST_FOR_SHAPE].map(|share| FEW_EDGES.max(share * shape));
+    let [most, few] = if sooner {
+        [FEW_EDGES.max(SOONER_FOR_SHAPE * shape); 2]
+    } else {
+        [NOT_MANY_EDGES.max(MOST_FOR_SHAPE * shape), FEW_EDGES.max(FIRST_FOR_SHAPE * shape)]
+    };
     let count = |tolerance: &BoundaryTolerance| -> Result<f64> {
         let error = BoundaryError::new(*tolerance);
         let pieces = boundary.chains.iter().map(|chain| least_pieces(chain, &error));
         Ok(pieces.sum::<Result<usize>>()? as f64)
     };
-    let mut steps = vec![*tolerance];
-    let mut before = count(tolerance)?;
-    if before <= most {
-        return Ok(steps);
+    let mut first = *tolerance;
+    let mut now = count(&first)?;
+    if now <= most {
+        return Ok(first);
     }
-    // As many steps as needed, all alike, so that the first is hardly looser than it has to be.
-    let halvings = (before / few).log2();
-    let factor = (halvings / halvings.ceil() * growth(&BoundaryError::new(*tolerance))).exp2();
-    let mut looser = *tolerance;
+    let growth = growth(&BoundaryError::new(first));
     for _ in 0..MOST_STEPS {
-        let (mut exponent, mut next, mut now) = (1.0, looser, before);
-        for _ in 0..SHORTENINGS {
-            next.value = looser.value * factor.powf(exponent);
-            now = count(&next)?;
-            if now * MOST_STEP >= before {
-                break;
-            }
-            // Knots take edges that a little more tolerance does without.
-            exponent *= 0.5;
-        }
-        looser = next;
-        // Curves with knots may lose fewer edges than smooth ones, too: what loses few is passed over.
-        if now <= few || now * WORTH < before {
-            steps.push(looser);
-            before = now;
-        }
         if now <= few {
             break;
         }
+        // As on a smooth curve, and a little more: a last step that is left by one edge would take forever.
+        first.value *= (1.01 * now / few).powf(growth);
+        now = count(&first)?;
     }
-    steps.reverse();
-    Ok(steps)
+    Ok(first)
 }
 
 /// Edges that the turns of a chain take.
@@ -89,48 +91,129 @@ fn edges_for_shape(chain: &Chain) -> f64 {
     1.0 + turn / EDGE_TURN
 }
 
-/// `mesh` with chords divided until every boundary edge keeps the tolerance: into equal parts, which smooth curves
-/// need, or by halving, which leaves fewer where knots take short edges; whichever makes fewer quads. `order` as for
-/// [`divide_chords`].
-///
-/// # Errors
-/// [`Error::Tolerance`](crate::Error::Tolerance) with the worst edge's place when both take more than `most` quads;
-/// [`Error::Layout`](crate::Error::Layout) when the mesh is defective.
-pub fn divide_to_tolerance(
-    mesh: QuadMesh,
-    boundary: &Boundary,
-    error: &BoundaryError,
-    order: usize,
-    most: usize,
-) -> Result<QuadMesh> {
-    match divide_equally(mesh.clone(), boundary, error, order, most)? {
-        None => subdivide(mesh, boundary, error, most),
-        Some(equal) if equal.quads.len() > MOST_COMPARED => Ok(equal),
-        Some(equal) => Ok(subdivide(mesh, boundary, error, equal.quads.len() - 1).unwrap_or(equal)),
-    }
+/// Which boundary edges break the tolerance.
+fn breaking(mesh: &QuadMesh, boundary: &Boundary, error: &BoundaryError) -> Vec<bool> {
+    mesh.edges.iter().map(|e| e.span.is_some_and(|span| error.ratio(boundary, span) > 1.0)).collect()
 }
 
-/// The same into equal parts; `None` if that takes more than `most` quads.
-fn divide_equally(
+/// `mesh` with boundary edges that break the tolerance, and are much longer than their elements are deep, divided with
+/// their chords. `order` as for [`divide_chords`].
+///
+/// # Errors
+/// [`Error::Layout`](crate::Error::Layout) when the mesh is defective.
+pub fn divide_wide(
     mut mesh: QuadMesh,
     boundary: &Boundary,
     error: &BoundaryError,
     order: usize,
-    most: usize,
-) -> Result<Option<QuadMesh>> {
-    for _ in 0..ROUNDS {
-        let wanted = |e: &Edge| e.span.map_or(1, |span| parts(span, boundary, error));
-        let wanted: Vec<u32> = mesh.edges.iter().map(wanted).collect();
+) -> Result<QuadMesh> {
+    let any = |_| 1.0;
+    for _ in 0..WIDE_ROUNDS {
+        let lengths = SizeLimit::new(&any).ratios(&mesh);
+        let wanted = |(edge, breaks): (&Edge, bool)| {
+            let (Some(span), true) = (edge.span, breaks) else { return 1 };
+            let quad = edge.quads[0] as usize;
+            let side =
+                mesh.quad_edges[quad].iter().position(|e| mesh.edges[*e as usize] == *edge).unwrap_or(0);
+            let depth = lengths[quad][1 - side % 2];
+            let wide = ((span.end - span.start) / (WIDE * depth)) as u32 + 1;
+            wide.min(parts(span, boundary, error))
+        };
+        let wanted: Vec<u32> = mesh.edges.iter().zip(breaking(&mesh, boundary, error)).map(wanted).collect();
         if wanted.iter().all(|n| *n == 1) {
-            return Ok(Some(mesh));
-        }
-        let parts = chord_parts(&mesh, &wanted);
-        if divided_quads(&mesh, &parts) > most as f64 {
             break;
         }
-        mesh = divide_chords(&mesh, boundary, &parts, order)?;
+        mesh = divide_chords(&mesh, boundary, &wanted, order)?;
     }
-    Ok(None)
+    Ok(mesh)
+}
+
+/// `mesh` with a row of elements along every stretch of boundary of which more than `share` breaks the tolerance.
+/// `order` as for [`divide_chords`].
+///
+/// # Errors
+/// [`Error::Layout`](crate::Error::Layout) when the mesh is defective.
+pub fn layered(
+    mesh: &QuadMesh,
+    boundary: &Boundary,
+    error: &BoundaryError,
+    share: f64,
+    order: usize,
+) -> Result<QuadMesh> {
+    insert_layer(mesh, boundary, &breaking(mesh, boundary, error), share, order)
+}
+
+/// `mesh` with every boundary edge divided in three, inside its element, that breaks the tolerance; `None` if none
+/// does. `even`: for symmetric meshes, where an edge and its image have to be divided alike; else where the parts that
+/// the tolerance takes at last will end. `order` as for [`divide_chords`].
+///
+/// # Errors
+/// [`Error::Layout`](crate::Error::Layout) when the mesh is defective.
+pub fn divide_boundary(
+    mesh: &QuadMesh,
+    boundary: &Boundary,
+    error: &BoundaryError,
+    even: bool,
+    order: usize,
+) -> Result<Option<QuadMesh>> {
+    let breaks = breaking(mesh, boundary, error);
+    if !breaks.contains(&true) {
+        return Ok(None);
+    }
+    let cut = |(edge, breaks): (&Edge, &bool)| {
+        edge.span.filter(|_| *breaks).map(|span| {
+            let ends =
+                if even { equal_parts(span, boundary, error) } else { odd_parts(span, boundary, error) };
+            ends.and_then(|ends| thirds(&ends))
+                .unwrap_or_else(|| [1.0, 2.0].map(|k| span.start + (span.end - span.start) * k / 3.0))
+        })
+    };
+    let cuts: Vec<Option<[f64; 2]>> = mesh.edges.iter().zip(&breaks).map(cut).collect();
+    divide_inside(mesh, boundary, &cuts, order).map(Some)
+}
+
+/// The ends among `ends`, of an odd number of parts, that leave odd numbers of them and about thirds of the length.
+fn thirds(ends: &[f64]) -> Option<[f64; 2]> {
+    let last = ends.len() - 1;
+    let near = |from: usize, to: usize, share: f64| {
+        let at = ends[0] + share * (ends[last] - ends[0]);
+        let off = |k: &usize| (ends[*k] - at).abs();
+        (from..to).step_by(2).min_by(|a, b| off(a).total_cmp(&off(b)))
+    };
+    let first = near(1, last - 1, 1.0 / 3.0)?;
+    let second = near(first + 1, last, 2.0 / 3.0)?;
+    Some([ends[first], ends[second]])
+}
+
+/// The ends of as few parts of `span` as keep the tolerance, or one more: an odd number, of about one error.
+fn odd_parts(span: Span, boundary: &Boundary, error: &BoundaryError) -> Option<Vec<f64>> {
+    let chain = &boundary.chains[span.chain as usize];
+    let at = |level: f64, most: usize| greedy(chain, error, span.start, span.end, level, most);
+    let mut high = error.tolerance.value;
+    let mut ends = at(high, usize::MAX)?;
+    let parts = (ends.len() - 1) | 1;
+    // The greedy last part is what is left over: with less error for each it is as long as the others.
+    let mut low = high / LEAST_LEVEL;
+    while high / low > LEVEL_RATIO {
+        let middle = (high * low).sqrt();
+        match at(middle, parts) {
+            Some(found) => (high, ends) = (middle, found),
+            None => low = middle,
+        }
+    }
+    while ends.len() <= parts {
+        let length = |i: &usize| ends[*i + 1] - ends[*i];
+        let longest = (0..ends.len() - 1).max_by(|a, b| length(a).total_cmp(&length(b)))?;
+        ends.insert(longest + 1, 0.5 * (ends[longest] + ends[longest + 1]));
+    }
+    Some(ends)
+}
+
+/// The ends of the least odd number of equal parts of `span` that keep the tolerance; `None` if these are many.
+fn equal_parts(span: Span, boundary: &Boundary, error: &BoundaryError) -> Option<Vec<f64>> {
+    let n = parts(span, boundary, error) | 1;
+    let at = |k: u32| span.start + (span.end - span.start) * f64::from(k) / f64::from(n);
+    (n <= MOST_EQUAL).then(|| (0..=n).map(at).collect())
 }
 
 /// Equal parts of `span` of which each keeps the tolerance.
@@ -145,7 +228,7 @@ fn parts(span: Span, boundary: &Boundary, error: &BoundaryError) -> u32 {
     let mut now = largest(n);
     while now > 1.0 && n < MOST_PARTS {
         let guess = f64::from(n) * now.powf(exponent);
-        n = (guess as u32).clamp(n + 1 + n / 8, MOST_PARTS);
+        n = (guess as u32).max(n + 1 + n / 8).min(MOST_PARTS);
         now = largest(n);
     }
     n

@@ -202,6 +202,8 @@ impl State {
 pub struct Optimiser<'a> {
     boundary: &'a Boundary,
     error: Option<BoundaryError>,
+    /// Whether boundary vertices may move along their chains.
+    slides: bool,
     linear: Reference,
     energy: Reference,
     dense: Reference,
@@ -238,12 +240,18 @@ impl<'a> Optimiser<'a> {
         Optimiser {
             boundary,
             error: tolerance.map(BoundaryError::new),
+            slides: true,
             linear: Reference::for_energy(1),
             energy: Reference::for_energy(order),
             dense: Reference::for_dense_energy(order),
             measuring: Reference::for_quality(order),
             straightness: Straightness::new(boundary),
         }
+    }
+
+    /// The same with all boundary vertices fixed, and so the edges' errors.
+    pub fn with_fixed_boundary(self) -> Self {
+        Optimiser { error: None, slides: false, ..self }
     }
 
     /// The domain's boundary.
@@ -369,6 +377,7 @@ impl<'a> Optimiser<'a> {
             Care::Quick | Care::Full => &self.straightness,
             Care::Final => &self.straightness.everywhere(),
         };
+        let slide = slide && self.slides;
         Problem::new(self.boundary, reference, tolerance, mesh, active, slide, straightness)
     }
 

@@ -59,7 +59,7 @@ pub(super) fn part_mesh(
             boundary,
             None,
             options,
-            setting.tolerances.first(),
+            &setting.tolerances.first,
             &mut request,
             &mut watch,
             &mut own,
