@@ -15,8 +15,10 @@ use crate::stages::Stages;
 
 /// Share of the domain's best possible scaled Jacobian below which an element is poor: 4 meshes of 538 have one.
 const POOR: f64 = 0.6;
-/// The same where boundary edges were divided inside their elements.
+/// The same below which it is bad.
 const BAD: f64 = 0.3;
+/// Most times the elements of a fair mesh that one may have which was divided at the boundary.
+const WORTH: f64 = 2.5;
 /// Elements above which a mesh is kept for its poor element: another takes as long again.
 const MOST_AGAIN: usize = 1500;
 
@@ -77,13 +79,18 @@ struct Made {
 }
 
 impl Made {
+    /// Whether the poorest element is not bad.
+    fn is_fair(&self) -> bool {
+        let [least, ceiling] = shape(&self.stages);
+        least >= BAD * ceiling
+    }
+
     /// Whether no other start is worth its time.
     fn will_do(&self, effort: Effort) -> bool {
-        let [least, ceiling] = shape(&self.stages);
         // Where edges had to be divided at the boundary, another layout does not make their elements better.
         let divided = self.stages.rounds.iter().any(|round| round.action == DIVIDED);
-        let fair = self.rank.poor == 0 || divided && least >= BAD * ceiling;
-        effort != Effort::Best && (fair || self.rank.elements > MOST_AGAIN)
+        let enough = self.rank.poor == 0 || divided && self.is_fair();
+        effort != Effort::Best && (enough || self.rank.elements > MOST_AGAIN)
     }
 }
 
@@ -131,7 +138,11 @@ pub(super) fn best_of_starts(
         match made {
             Ok(mesh) => {
                 let rank = Rank::of(&mesh, &own);
-                if best.as_ref().is_none_or(|best| rank < best.rank) {
+                let better = best.as_ref().is_none_or(|best| {
+                    let costs = rank.elements as f64 > WORTH * best.rank.elements as f64;
+                    rank < best.rank && !(start.sooner && costs && best.is_fair())
+                });
+                if better {
                     best = Some(Made { mesh, rank, stages: own });
                 }
             }
