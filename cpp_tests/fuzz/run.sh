@@ -4,15 +4,15 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$1
 seconds=$2
-target=$(rustc -vV | sed -n 's/^host: //p')
 mkdir -p "$folder/corpus"
-# What cargo-fuzz sets, on the stable compiler; --target keeps it off build scripts.
-counters="-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
--Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
--Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1 -Cdebug-assertions=on"
-CARGO_TARGET_DIR="$folder/cargo" RUSTFLAGS="$counters" cargo rustc --release --locked --lib --no-default-features \
-    --crate-type staticlib --target "$target" --manifest-path "$root/Cargo.toml"
+# What cargo-fuzz sets, on the stable compiler, for this crate alone: what it depends on is that of other builds.
+cargo=${CARGO_TARGET_DIR:-$root/target}
+CARGO_TARGET_DIR="$cargo" cargo rustc --release --locked --lib --no-default-features --crate-type staticlib \
+    --manifest-path "$root/Cargo.toml" -- -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
+    -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
+    -Cllvm-args=-sanitizer-coverage-trace-compares -Cdebug-assertions=on
+cp "$cargo/release/libquadrel.a" "$folder/libquadrel.a"
 clang++ -std=c++17 -O1 -g -fsanitize=fuzzer,address -I"$root/include" "$root/cpp_tests/fuzz/calls.cpp" \
-    "$folder/cargo/$target/release/libquadrel.a" -lm -ldl -lpthread -o "$folder/calls"
+    "$folder/libquadrel.a" -lm -ldl -lpthread -o "$folder/calls"
 cd "$folder"
 ./calls -max_total_time="$seconds" -timeout=120 -rss_limit_mb=4096 -max_len=400 -print_final_stats=1 corpus
