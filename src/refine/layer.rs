@@ -68,9 +68,11 @@ pub fn insert_layer(
 struct Layer<'a> {
     mesh: &'a QuadMesh,
     boundary: &'a Boundary,
+    /// Degrees that a new line's shape has.
     count: usize,
+    /// The quads at each vertex.
     around: Vec<Vec<u32>>,
-    /// The boundary edges that come in and go out at each vertex.
+    /// The boundary edges that come in and go out at each vertex; `NONE` inside.
     ends: Vec<[u32; 2]>,
     /// Whether a row follows each edge.
     on: Vec<bool>,
@@ -153,47 +155,42 @@ impl<'a> Layer<'a> {
         }
     }
 
+    /// Where more than one element is. `fanned`: quads that lie between spokes of a wide corner already.
     fn within(&mut self, v: u32, fanned: &mut [bool]) -> Inner {
-        let ends = self.ends[v as usize];
-        let quads = &self.around[v as usize];
-        let mut spokes: Vec<u32> = quads.iter().flat_map(|q| self.mesh.quad_edges[*q as usize]).collect();
+        let (ends, quads) = (self.ends[v as usize], &self.around[v as usize]);
+        let sides = |q: &u32| self.mesh.quad_edges[*q as usize];
+        let mut spokes: Vec<u32> = quads.iter().flat_map(sides).collect();
         spokes.retain(|e| !ends.contains(e) && self.mesh.edges[*e as usize].vertices.contains(&v));
         spokes.sort_unstable();
         spokes.dedup();
-        let edges = &self.mesh.edges;
         let reach = |e: &u32| {
-            let [a, b] = edges[*e as usize].vertices.map(|v| self.mesh.vertices[v as usize].point);
+            let [a, b] = self.mesh.edges[*e as usize].vertices.map(|v| self.mesh.vertices[v as usize].point);
             (b - a).norm()
         };
-        let shortest = spokes.iter().map(reach).fold(f64::INFINITY, f64::min);
-        let depth = DEPTH * 0.5 * (self.length(ends[0]) + self.length(ends[1]));
-        let share = (depth / shortest).min(MOST);
+        let reaches: Vec<f64> = spokes.iter().map(reach).collect();
+        let shortest = reaches.iter().copied().fold(f64::INFINITY, f64::min);
+        let depth = (DEPTH * 0.5 * (self.length(ends[0]) + self.length(ends[1]))).min(MOST * shortest);
+        let shares = reaches.iter().map(|reach| depth / reach);
+        let points: Vec<(u32, f64, Point)> =
+            spokes.iter().zip(shares).map(|(e, share)| (*e, share, self.point_from(*e, v, share))).collect();
         let wide = match self.mesh.vertices[v as usize].place {
             Place::Junction(j) => self.boundary.junctions[j as usize].angle > WIDEST,
             _ => false,
         };
-        let between = |q: &u32| !self.mesh.quad_edges[*q as usize].iter().any(|e| ends.contains(e));
-        let middle: Vec<u32> = quads.iter().copied().filter(between).collect();
+        let middle: Vec<u32> =
+            quads.iter().copied().filter(|q| !sides(q).iter().any(|e| ends.contains(e))).collect();
+        let inside = |point| Vertex { point, place: Place::Interior };
         if wide && !middle.is_empty() && middle.iter().all(|q| !fanned[*q as usize]) {
             middle.iter().for_each(|q| fanned[*q as usize] = true);
-            let shares: Vec<f64> = spokes.iter().map(|e| share * shortest / reach(e)).collect();
-            let points: Vec<Point> =
-                spokes.iter().zip(&shares).map(|(e, share)| self.point_from(*e, v, *share)).collect();
-            let add = |point| self.add(Vertex { point, place: Place::Interior });
-            let new: Vec<u32> = points.into_iter().map(add).collect();
-            return Inner::Fan {
-                spokes: spokes
-                    .into_iter()
-                    .zip(new.into_iter().zip(shares))
-                    .map(|(e, (v, s))| (e, v, s))
-                    .collect(),
-            };
+            let spokes = points.into_iter().map(|(e, share, point)| (e, self.add(inside(point)), share));
+            return Inner::Fan { spokes: spokes.collect() };
         }
-        let points = spokes.iter().map(|e| self.point_from(*e, v, share * shortest / reach(e)).coords);
-        let point = Point::from(points.sum::<Vector>() / spokes.len() as f64);
-        Inner::Within { vertex: self.add(Vertex { point, place: Place::Interior }), share }
+        let sum: Vector = points.iter().map(|(_, _, point)| point.coords).sum();
+        let vertex = self.add(inside(Point::from(sum / points.len() as f64)));
+        Inner::Within { vertex, share: depth / shortest }
     }
 
+    /// Where one element is.
     fn at_corner(&mut self, ends: [u32; 2], on: [bool; 2]) -> Inner {
         let lengths = ends.map(|e| self.length(e));
         let depth = |along: usize| (DEPTH * lengths[along] / lengths[1 - along]).min(MOST);
@@ -216,6 +213,7 @@ impl<'a> Layer<'a> {
         }
     }
 
+    /// A new vertex on a boundary edge.
     fn on_edge(&mut self, e: u32, share: f64) -> u32 {
         let Some(span) = self.mesh.edges[e as usize].span else { unreachable!("a boundary edge") };
         let chain = &self.boundary.chains[span.chain as usize];
@@ -244,7 +242,18 @@ impl<'a> Layer<'a> {
         }
     }
 
+    /// The old quad without what rows take of it, and the rows' elements in it.
     fn divide(&mut self, quad: usize) {
+        self.shrink(quad);
+        for side in 0..4 {
+            if self.on[self.mesh.quad_edges[quad][side] as usize] {
+                self.row(quad, side);
+            }
+        }
+    }
+
+    /// Between two spokes of a wide corner the quad becomes three.
+    fn shrink(&mut self, quad: usize) {
         let (own, sides) = (self.mesh.quads[quad], self.mesh.quad_edges[quad]);
         let corners = [0, 1, 2, 3].map(|k| self.moved(quad, k));
         let fan = |k: &usize| {
@@ -266,43 +275,30 @@ impl<'a> Layer<'a> {
             }
             None => self.quads.push(corners),
         }
-        for first in 0..4 {
-            let e = sides[first];
-            if !self.on[e as usize] {
-                continue;
-            }
-            let (next, last) = ((first + 1) % 4, (first + 3) % 4);
-            let (a, b) = (own[first], own[next]);
-            let ([low_a, high_a], at_a) = match &self.inner[a as usize] {
-                Inner::Both { ahead, inside, shares, .. } => ([*ahead, *inside], [shares[1], shares[0]]),
-                Inner::Within { vertex, share } | Inner::Out { vertex, share } => {
-                    ([a, *vertex], [0.0, *share])
-                }
-                _ => {
-                    let (vertex, share) = self.spoke(a, sides[last]).unwrap_or((a, 0.0));
-                    ([a, vertex], [0.0, share])
-                }
-            };
-            let ([low_b, high_b], at_b) = match &self.inner[b as usize] {
-                Inner::Both { behind, inside, shares, .. } => {
-                    ([*behind, *inside], [1.0 - shares[0], shares[1]])
-                }
-                Inner::Within { vertex, share } | Inner::In { vertex, share } => {
-                    ([b, *vertex], [1.0, *share])
-                }
-                _ => {
-                    let (vertex, share) = self.spoke(b, sides[next]).unwrap_or((b, 0.0));
-                    ([b, vertex], [1.0, share])
-                }
-            };
-            self.quads.push([low_a, low_b, high_b, high_a]);
-            let view = View::new(self.mesh, self.boundary, quad, first);
-            self.shapes.insert([high_a, high_b], view.shape(at_a, at_b, self.count));
-            if let Inner::Both { ahead, behind, inside, .. } = self.inner[a as usize] {
-                self.quads.push([a, ahead, inside, behind]);
-                self.shapes.insert([ahead, inside], view.shape([at_a[0], 0.0], at_a, self.count));
-                self.shapes.insert([behind, inside], view.shape([0.0, at_a[1]], at_a, self.count));
-            }
+    }
+
+    /// The row's element at side `first` of `quad`, and the one at the corner before it that two rows share.
+    fn row(&mut self, quad: usize, first: usize) {
+        let (next, last) = ((first + 1) % 4, (first + 3) % 4);
+        let sides = self.mesh.quad_edges[quad];
+        let [a, b] = [first, next].map(|k| self.mesh.quads[quad][k]);
+        let ([low_a, high_a], at_a) = match &self.inner[a as usize] {
+            Inner::Both { ahead, inside, shares, .. } => ([*ahead, *inside], [shares[1], shares[0]]),
+            Inner::Within { vertex, share } | Inner::Out { vertex, share } => ([a, *vertex], [0.0, *share]),
+            _ => self.spoke(a, sides[last]).map_or(([a, a], [0.0; 2]), |(v, share)| ([a, v], [0.0, share])),
+        };
+        let ([low_b, high_b], at_b) = match &self.inner[b as usize] {
+            Inner::Both { behind, inside, shares, .. } => ([*behind, *inside], [1.0 - shares[0], shares[1]]),
+            Inner::Within { vertex, share } | Inner::In { vertex, share } => ([b, *vertex], [1.0, *share]),
+            _ => self.spoke(b, sides[next]).map_or(([b, b], [1.0, 0.0]), |(v, share)| ([b, v], [1.0, share])),
+        };
+        self.quads.push([low_a, low_b, high_b, high_a]);
+        let view = View::new(self.mesh, self.boundary, quad, first);
+        self.shapes.insert([high_a, high_b], view.shape(at_a, at_b, self.count));
+        if let Inner::Both { ahead, behind, inside, .. } = self.inner[a as usize] {
+            self.quads.push([a, ahead, inside, behind]);
+            self.shapes.insert([ahead, inside], view.shape([at_a[0], 0.0], at_a, self.count));
+            self.shapes.insert([behind, inside], view.shape([0.0, at_a[1]], at_a, self.count));
         }
     }
 
