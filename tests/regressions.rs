@@ -59,3 +59,11 @@ fn junctions_far_apart_on_two_sides_of_a_stroke_are_not_joined() {
     assert!(least > 0.7, "scaled Jacobian {least}");
     assert!(mesh.elements.len() <= 40, "{} elements", mesh.elements.len());
 }
+
+/// A neck of three thousandths between two corners, in one line with the wall beside it: the edge across it joins two
+/// junctions and had to stay straight, so that its element had a flat corner, whose rounding counted as valid.
+#[test]
+fn an_edge_across_a_neck_in_line_with_the_wall_bends() {
+    let (elements, _) = mesh("glyphs/NotoSansCJK/u9b10.svg");
+    assert!(elements <= 90, "{elements} elements");
+}

@@ -4,10 +4,11 @@ mod fixtures;
 
 use fixtures::*;
 use quadrel::domain::Place;
-use quadrel::mesh::{unproven, BoundaryTolerance, HighOrderMesh, QuadMesh, TableCurve};
+use quadrel::mesh::{unproven, BoundaryTolerance, HighOrderMesh, QuadMesh, TableCurve, Vertex};
 use quadrel::numerics::Vector;
 use quadrel::options::Norm;
 use quadrel::smooth::{equal_spacing, Care, Optimiser};
+use std::collections::HashMap;
 
 #[test]
 fn disc_of_twelve() {
@@ -23,6 +24,21 @@ fn disc_of_twelve() {
     assert!(after.min_scaled_jacobian > before.min_scaled_jacobian);
     assert!(after.error_ratio <= 1.0);
     assert!(after.min_jacobian_ratio > 0.1, "{}", after.min_jacobian_ratio);
+}
+
+/// Two quads whose common edge joins two junctions, in one line with a wall: one has a flat corner until it bends.
+#[test]
+fn an_edge_in_line_with_a_wall_bends() {
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, -1.0], [2.0, -1.0], [2.0, 0.0], [0.0, 1.0]];
+    let b = boundary(vec![polygon(&corners)]);
+    let junction = |k: u32| Vertex { point: b.junctions[k as usize].point, place: Place::Junction(k) };
+    let vertices = (0..6).map(junction).collect();
+    let quads = vec![[0, 1, 4, 5], [1, 2, 3, 4]];
+    let mut m = QuadMesh::new(&b, vertices, quads, vec![0; 2], &HashMap::new()).unwrap();
+    let optimiser = Optimiser::new(&b, 4, None);
+    assert!(!optimiser.quality(&m).valid(), "the start must have a flat corner");
+    let outcome = optimiser.optimise(&mut m, None, Care::Full);
+    assert!(outcome.valid && outcome.min_scaled_jacobian > 0.3, "{outcome:?}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::domain::{Boundary, BoundaryPoint, Place};
 use crate::error::{Error, Result};
 use crate::layout::QuadLayout;
 use crate::mesh::{scaled_jacobian_ceiling, BoundaryError, BoundaryTolerance, QuadMesh, Vertex};
-use crate::numerics::tolerances::{OFF_POWERS, START_GRID};
+use crate::numerics::tolerances::{LEAST_JACOBIAN, OFF_POWERS, START_GRID};
 use crate::numerics::Point;
 use crate::options::{Options, Subdivision};
 use crate::progress::Stage;
@@ -109,7 +109,7 @@ pub(super) fn refine_and_smooth(
             }
             marked.iter_mut().zip(too_large(&mesh)).for_each(|(marked, large)| *marked |= large);
         } else {
-            let inverted = |q: &usize| quality.elements[*q].jacobian_ratio <= 0.0;
+            let inverted = |q: &usize| quality.elements[*q].jacobian_ratio <= LEAST_JACOBIAN;
             let inverted: Vec<usize> = (0..mesh.quads.len()).filter(inverted).collect();
             if mesh.quads.len() <= LARGE || (inverted.len() as f64) < FEW * mesh.quads.len() as f64 {
                 for e in inverted.iter().flat_map(|q| mesh.quad_edges[*q]) {

@@ -253,3 +253,10 @@ pub const ON_BREAK: f64 = 1e-10;
 /// Share by which two divisions may differ in worth and still be made together: what is symmetric only to rounding,
 /// or to what smoothing leaves, must be divided alike.
 pub const EQUAL_WORTH: f64 = 1e-3;
+
+/// Sine of the angle of two fixed straight sides of an element up to which its corner counts as flat: the element has no
+/// better scaled Jacobian unless one of them bends.
+pub const FLAT_CORNER: f64 = 0.05;
+
+/// Least det J, divided by the element's area, that counts as positive: less is what rounding makes of a flat corner.
+pub const LEAST_JACOBIAN: f64 = 1e-12;

@@ -3,6 +3,7 @@
 use super::local::{grow, parts, Saved};
 use super::optimiser::{Care, Optimiser};
 use crate::mesh::QuadMesh;
+use crate::numerics::tolerances::LEAST_JACOBIAN;
 use crate::numerics::NONE;
 
 /// Rings of quads around refused ones, in turn.
@@ -52,7 +53,7 @@ fn mend_part(
         optimiser.run_dense(mesh, part, care, work);
         let after = refuses(mesh, part);
         let quality = optimiser.quality_of(mesh, Some(part));
-        let inverted = quality.elements.iter().filter(|e| e.jacobian_ratio <= 0.0).count();
+        let inverted = quality.elements.iter().filter(|e| e.jacobian_ratio <= LEAST_JACOBIAN).count();
         // What is refused may be inverted to the samples, too; others may not be for its sake.
         if after.len() < refused.len() && inverted <= after.len() && quality.error_ratio <= error.max(1.0) {
             refused = after;

@@ -13,7 +13,7 @@ use super::straightness::Straightness;
 use super::untangle::untangle;
 use crate::domain::Boundary;
 use crate::mesh::{BoundaryError, BoundaryTolerance, QuadMesh};
-use crate::numerics::tolerances::{DECISION_GRID, FINAL_GRID, WHOLE_GRID};
+use crate::numerics::tolerances::{DECISION_GRID, FINAL_GRID, LEAST_JACOBIAN, WHOLE_GRID};
 
 /// How much work an optimisation may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -228,7 +228,7 @@ impl Elements for Curved<'_> {
     }
 
     fn inverted(&self, mesh: &QuadMesh, quad: u32) -> bool {
-        self.optimiser.element_quality(mesh, quad).jacobian_ratio <= 0.0
+        self.optimiser.element_quality(mesh, quad).jacobian_ratio <= LEAST_JACOBIAN
     }
 }
 
@@ -355,7 +355,11 @@ impl<'a> Optimiser<'a> {
 
     /// Those of `quads` that have an inverted sample.
     fn inverted_among(&self, mesh: &QuadMesh, quads: &[u32]) -> Vec<u32> {
-        quads.iter().copied().filter(|q| self.element_quality(mesh, *q).jacobian_ratio <= 0.0).collect()
+        quads
+            .iter()
+            .copied()
+            .filter(|q| self.element_quality(mesh, *q).jacobian_ratio <= LEAST_JACOBIAN)
+            .collect()
     }
 
     /// The quads `active` of `mesh` untangled if need be, and improved, with dense samples.
@@ -400,14 +404,14 @@ impl<'a> Optimiser<'a> {
         }) {
             return State::of(&mut problem, false);
         }
-        let mut valid = problem.least_jacobian() > 0.0;
+        let mut valid = problem.least_jacobian() > LEAST_JACOBIAN;
         let mut few = false;
         if !valid && active.is_none() {
             untangle_straight(self.boundary, &self.linear, &self.straightness, mesh, care, work);
             let left = untangle_locally(&Curved { optimiser: self, reference, care }, mesh, care, work);
             few = few_of_many(left, mesh.quads.len());
             problem = self.problem(reference, mesh, active, true, care);
-            valid = problem.least_jacobian() > 0.0;
+            valid = problem.least_jacobian() > LEAST_JACOBIAN;
         }
         if !valid && !few {
             for (prepare, slide) in schedule.ways.iter().copied() {
@@ -435,7 +439,7 @@ impl<'a> Optimiser<'a> {
                 }
             }
             problem = self.problem(reference, mesh, active, true, care);
-            valid = problem.least_jacobian() > 0.0;
+            valid = problem.least_jacobian() > LEAST_JACOBIAN;
         }
         if valid && active.is_none() && problem.scaled_jacobian < POOR {
             // One element that is hardly valid would stop all others: its energy outweighs theirs.

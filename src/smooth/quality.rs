@@ -5,6 +5,7 @@ use super::straightness::Straightness;
 use crate::domain::walk::{walk, FOUR};
 use crate::domain::Boundary;
 use crate::mesh::QuadMesh;
+use crate::numerics::tolerances::LEAST_JACOBIAN;
 use crate::numerics::{cross, Vector};
 
 /// What sampling sees of one element.
@@ -44,7 +45,7 @@ impl Quality {
 
     /// Whether no sample is inverted.
     pub fn valid(&self) -> bool {
-        self.min_jacobian_ratio > 0.0
+        self.min_jacobian_ratio > LEAST_JACOBIAN
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::domain::{Boundary, Chain, Place};
 use crate::mesh::QuadMesh;
-use crate::numerics::tolerances::STRAIGHT_CHAIN;
+use crate::numerics::tolerances::{FLAT_CORNER, STRAIGHT_CHAIN};
 use crate::numerics::{Vector, NONE};
 use std::borrow::Cow;
 
@@ -31,7 +31,10 @@ impl Straightness<'_> {
     pub fn holds(&self, mesh: &QuadMesh, edge: u32) -> bool {
         let own = &mesh.edges[edge as usize];
         let beside = |q: &u32| *q != NONE && self.beside_curve(mesh, *q);
-        let may_bend = || own.span.is_none() && (self.everywhere || own.quads.iter().any(beside));
+        let may_bend = || {
+            own.span.is_none()
+                && (self.everywhere || own.quads.iter().any(beside) || self.continues_boundary(mesh, edge))
+        };
         self.holds_now(mesh, edge) && !may_bend()
     }
 
@@ -44,6 +47,29 @@ impl Straightness<'_> {
         };
         mesh.quad_edges[quad as usize].into_iter().any(curved)
             || mesh.quads[quad as usize].into_iter().any(on_curve)
+    }
+
+    /// Whether an edge joins two junctions, so that nothing moves it, and is in one line with a straight boundary edge of
+    /// the same quad: that has no angle there unless the edge bends.
+    fn continues_boundary(&self, mesh: &QuadMesh, edge: u32) -> bool {
+        let own = &mesh.edges[edge as usize];
+        let fixed = |v: &u32| matches!(mesh.vertices[*v as usize].place, Place::Junction(_));
+        if !own.vertices.iter().all(fixed) {
+            return false;
+        }
+        own.quads.into_iter().filter(|q| *q != NONE).any(|q| {
+            let (quad, sides) = (mesh.quads[q as usize], mesh.quad_edges[q as usize]);
+            let side = (0..4).find(|s| sides[*s] == edge).unwrap_or(0);
+            // At the corner where the side starts, and where it ends.
+            [(side, (side + 3) % 4), ((side + 1) % 4, (side + 1) % 4)].into_iter().any(|(corner, beside)| {
+                let along = mesh.edges[sides[beside] as usize].span;
+                let [before, at, after] =
+                    [3, 0, 1].map(|k| mesh.vertices[quad[(corner + k) % 4] as usize].point);
+                let (to, from) = (after - at, before - at);
+                along.is_some_and(|span| self.chains[span.chain as usize])
+                    && to.perp(&from) <= FLAT_CORNER * to.norm() * from.norm()
+            })
+        })
     }
 
     /// Whether an edge is straight now.

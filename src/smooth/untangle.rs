@@ -7,6 +7,7 @@ use super::kernel::Measure;
 use super::minimiser::{Lbfgs, Limits};
 use super::optimiser::Schedule;
 use super::problem::Problem;
+use crate::numerics::tolerances::LEAST_JACOBIAN;
 
 /// Least d/A at which a mesh counts as untangled: the shape energy takes over there.
 const UNTANGLED: f64 = 1e-3;
@@ -59,5 +60,5 @@ pub(super) fn untangle(
         let bound = (1.0 - share) * chi;
         epsilon = if least < bound { 2.0 * (bound * (bound - least)).sqrt() } else { 1e-9 };
     }
-    least > 0.0
+    least > LEAST_JACOBIAN
 }
