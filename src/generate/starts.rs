@@ -32,8 +32,8 @@ pub(super) struct Start {
     pub sooner: bool,
 }
 
-/// Starts tried: the field asked for and the other one, each on the usual base mesh and on the next finer one; and,
-/// second, elements for fewer edges, divided at the boundary.
+/// Starts tried: the field asked for and the other one, on the usual base mesh; elements for fewer edges, divided at the
+/// boundary; and both fields on the next finer base mesh.
 fn starts(options: &Options) -> Vec<Start> {
     let other = match options.field {
         FieldMethod::Diffused => FieldMethod::Harmonic,
@@ -43,7 +43,7 @@ fn starts(options: &Options) -> Vec<Start> {
     let both =
         |finer: &usize| [options.field, other].map(|field| Start { field, finer: *finer, sooner: false });
     let mut starts: Vec<Start> = finer.iter().flat_map(both).collect();
-    starts.insert(1, Start { sooner: true, ..starts[0] });
+    starts.insert(2, Start { sooner: true, ..starts[0] });
     starts
 }
 
