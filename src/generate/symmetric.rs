@@ -107,7 +107,7 @@ pub(super) fn proven(
     let proven =
         tightened(&found.mesh, boundary, options, tolerances, true, watch, stages).and_then(|mesh| {
             // Smoothing moves images alike, but for rounding that it makes more of.
-            let even = if mesh.quads.len() == found.mesh.quads.len() { Some(mesh) } else { average_of(mesh) };
+            let even = if tolerances.first == tolerances.asked { Some(mesh) } else { average_of(mesh) };
             let mesh = even.ok_or(Error::Layout { reason: "division lost a symmetry".into(), at: None })?;
             let prove =
                 |_: &mut Stages| HighOrderMesh::with_curve(&mesh, boundary, &curve, &tolerances.asked);

@@ -73,7 +73,8 @@ struct Division<'a> {
 impl Division<'_> {
     fn divide(&mut self, quad: usize) {
         let (mesh, boundary) = (self.mesh, self.boundary);
-        let cut = mesh.quad_edges[quad].map(|e| self.cuts[e as usize].is_some());
+        let on_boundary = |e: u32| mesh.edges[e as usize].span.is_some();
+        let cut = mesh.quad_edges[quad].map(|e| on_boundary(e) && self.cuts[e as usize].is_some());
         if !cut.contains(&true) {
             self.quads.push(mesh.quads[quad]);
             return;

@@ -30,8 +30,11 @@ const SOONER_FOR_SHAPE: f64 = 0.8;
 const NOT_MANY_EDGES: f64 = 100.0;
 /// ... and that the looser tolerance may take.
 const FEW_EDGES: f64 = 12.0;
-/// Most steps in which the looser tolerance is found.
+/// Most steps in which the looser tolerance is found ...
 const MOST_STEPS: usize = 60;
+/// ... and how many times the edges that are too many each step is made for: to come down by one edge takes steps
+/// without end.
+const STEP_AMPLE: f64 = 1.01;
 /// Length of a boundary edge, in depths of its element, above which it is divided with its chord.
 const WIDE: f64 = 4.0;
 /// Rounds of that: parts of curved elements may be wide again.
@@ -76,8 +79,8 @@ pub fn first_tolerance(
         if now <= few {
             break;
         }
-        // As on a smooth curve, and a little more: a last step that is left by one edge would take forever.
-        first.value *= (1.01 * now / few).powf(growth);
+        // As on a smooth curve.
+        first.value *= (STEP_AMPLE * now / few).powf(growth);
         now = count(&first)?;
     }
     Ok(first)
@@ -110,16 +113,16 @@ pub fn divide_wide(
     let any = |_| 1.0;
     for _ in 0..WIDE_ROUNDS {
         let lengths = SizeLimit::new(&any).ratios(&mesh);
-        let wanted = |(edge, breaks): (&Edge, bool)| {
-            let (Some(span), true) = (edge.span, breaks) else { return 1 };
+        let breaks = breaking(&mesh, boundary, error);
+        let wanted = |(e, edge): (u32, &Edge)| {
+            let (Some(span), true) = (edge.span, breaks[e as usize]) else { return 1 };
             let quad = edge.quads[0] as usize;
-            let side =
-                mesh.quad_edges[quad].iter().position(|e| mesh.edges[*e as usize] == *edge).unwrap_or(0);
+            let side = mesh.quad_edges[quad].iter().position(|own| *own == e).unwrap_or(0);
             let depth = lengths[quad][1 - side % 2];
             let wide = ((span.end - span.start) / (WIDE * depth)) as u32 + 1;
             wide.min(parts(span, boundary, error))
         };
-        let wanted: Vec<u32> = mesh.edges.iter().zip(breaking(&mesh, boundary, error)).map(wanted).collect();
+        let wanted: Vec<u32> = (0u32..).zip(&mesh.edges).map(wanted).collect();
         if wanted.iter().all(|n| *n == 1) {
             break;
         }
