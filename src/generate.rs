@@ -22,6 +22,7 @@ use crate::mesh::{BoundaryTolerance, DomainCurve, HighOrderMesh};
 use crate::options::Options;
 use crate::progress::Stage;
 use crate::stages::Stages;
+use blocks::Wanted;
 use finish::Elements;
 use starts::Start;
 use tighten::Tolerances;
@@ -37,9 +38,23 @@ const GIVEN_ATTEMPTS: usize = 2;
 /// quadrature points, and the last optimisation may use all of what they allow.
 const TOLERANCE_AIM: f64 = 0.97;
 
+/// The same at orders from [`HIGH_ORDER`] on. Their edges span several knots of a spline, where a quadrature
+/// that does not stop at knots (the user's) is up to 15 % off.
+const HIGH_ORDER_AIM: f64 = 0.85;
+const HIGH_ORDER: usize = 8;
+
+/// Share of the tolerance that the stages aim at for elements of `order`.
+fn share_aimed_at(order: usize) -> f64 {
+    if order < HIGH_ORDER {
+        TOLERANCE_AIM
+    } else {
+        HIGH_ORDER_AIM
+    }
+}
+
 /// What the stages aim at for `tolerance`; the final mesh is measured against the tolerance itself.
 fn aim(tolerance: &BoundaryTolerance) -> BoundaryTolerance {
-    BoundaryTolerance { value: TOLERANCE_AIM * tolerance.value, ..*tolerance }
+    BoundaryTolerance { value: share_aimed_at(tolerance.order) * tolerance.value, ..*tolerance }
 }
 
 /// Meshes `domain`. `stages` keeps what every stage made, also on failure.
@@ -90,6 +105,7 @@ fn one_mesh(domain: &Domain, options: &Options, start: Start, stages: &mut Stage
     }
     let attempts = if given.is_some() { GIVEN_ATTEMPTS } else { ATTEMPTS };
 
+    let wanted = Wanted { tolerance: aim(&tolerances.first), size: start.size };
     let mut failure = None;
     let mut request = blocks::first_request(options, &boundary);
     for _ in 0..start.finer {
@@ -99,13 +115,12 @@ fn one_mesh(domain: &Domain, options: &Options, start: Start, stages: &mut Stage
         stages.begin_attempt(attempt);
         // The stages speak of places in the canonical frame.
         let given = given.as_ref();
-        let elements =
-            steps_1_to_9(&boundary, given, options, &tolerances.first, &mut request, &mut watch, stages)
-                .map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)));
+        let elements = steps_1_to_9(&boundary, given, options, &wanted, &mut request, &mut watch, stages)
+            .map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)));
         // The proof: curved elements of order N with positive Jacobians, on the exact curves.
         let result = elements.and_then(|elements| {
             if !group.is_trivial() {
-                let setting = symmetric::Setting { options, tolerances: &tolerances };
+                let setting = symmetric::Setting { options, tolerances: &tolerances, wanted: &wanted };
                 let made = symmetric::proven(
                     setting,
                     &boundary,
@@ -142,7 +157,7 @@ fn steps_1_to_9(
     boundary: &Boundary,
     given: Option<&Triangulation>,
     options: &Options,
-    tolerance: &BoundaryTolerance,
+    wanted: &Wanted,
     request: &mut base_mesh::Request,
     watch: &mut Watch,
     stages: &mut Stages,
@@ -150,18 +165,17 @@ fn steps_1_to_9(
     // Steps 1 to 3: base mesh, cross field, singularities; refined until the index theorem holds.
     let field = blocks::field(boundary, given, options, false, request, watch, stages)?;
 
-    let aim = &aim(tolerance);
-
     // Steps 4 to 6: separatrices, quad-dominant regions, repair.
-    let mut blocks = blocks::layout(boundary, options, aim, &field, watch, stages);
+    let mut blocks = blocks::layout(boundary, options, wanted, &field, watch, stages);
     if matches!(blocks, Err(Error::Separatrix { .. })) {
         // A line found no way: without the singularities that lie at corners it may.
         let field = blocks::field(boundary, given, options, true, request, watch, stages)?;
-        blocks = blocks::layout(boundary, options, aim, &field, watch, stages);
+        blocks = blocks::layout(boundary, options, wanted, &field, watch, stages);
     }
     let (layout, sizes) = blocks?;
 
     // Steps 7 to 9: subdivide and smooth until every boundary edge meets the tolerance.
-    let refined = rounds::refine_and_smooth(boundary, options, aim, &layout, &sizes, watch, stages)?;
+    let refined =
+        rounds::refine_and_smooth(boundary, options, &wanted.tolerance, &layout, &sizes, watch, stages)?;
     Ok(Elements { refined, sizes })
 }

@@ -39,6 +39,14 @@ pub(super) struct Field {
     pub corners: Vec<CornerFan>,
 }
 
+/// What blocks are made for.
+pub(super) struct Wanted {
+    /// The tolerance that their edges are divided for.
+    pub tolerance: BoundaryTolerance,
+    /// Size of a block's elements before coarsening, relative to the usual one.
+    pub size: f64,
+}
+
 pub(super) fn first_request(options: &Options, boundary: &Boundary) -> Request {
     Request { size: options.base_mesh_size.map(|h| h / boundary.frame.scale), refine: Vec::new() }
 }
@@ -100,7 +108,7 @@ pub(super) fn field(
 pub(super) fn layout(
     boundary: &Boundary,
     options: &Options,
-    tolerance: &BoundaryTolerance,
+    wanted: &Wanted,
     field: &Field,
     watch: &mut Watch,
     stages: &mut Stages,
@@ -126,18 +134,18 @@ pub(super) fn layout(
     stages.block_layout = Some(regions.clone());
     let sizes = ElementSize::new(mesh, boundary, options)?;
     if sizes.least_elements > options.max_elements as f64 {
-        let wanted = sizes.least_elements;
-        let reason = format!("the sizes asked for take {wanted:.0} elements, above {}", options.max_elements);
+        let least = sizes.least_elements;
+        let reason = format!("the sizes asked for take {least:.0} elements, above {}", options.max_elements);
         return Err(Error::Layout { reason, at: None });
     }
     let conforming = watch.run(stages, Stage::Layout, |_| {
-        let error = BoundaryError::new(*tolerance);
+        let error = BoundaryError::new(wanted.tolerance);
         let mut minimum = Vec::with_capacity(boundary.chains.len());
         for chain in &boundary.chains {
             let least = least_pieces(chain, &error)?;
             minimum.push(if least > 1 { (least as f64 * CHAIN_MARGIN).ceil() as u32 } else { 1 });
         }
-        let size = |p| sizes.at(p).max(LEAST_SIZE);
+        let size = |p| (wanted.size * sizes.at(p)).max(LEAST_SIZE);
         layout::conform(&regions, boundary, &Targets::new(&size, &minimum))
     })?;
     stages.block_layout = Some(conforming.repaired);

@@ -22,34 +22,48 @@ const WORTH: f64 = 2.5;
 /// Elements above which a mesh is kept for its poor element: another takes as long again.
 const MOST_AGAIN: usize = 1500;
 
+/// Size of blocks' elements before coarsening, relative to the usual one, for a start with finer blocks: a bend of many short
+/// elements is smoothed where one of a few long ones folds.
+const FINER_BLOCKS: f64 = 0.6;
+
 /// How a mesh is begun.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Start {
     field: FieldMethod,
     /// Times that the base mesh is refined before anything is tried.
     pub finer: usize,
+    /// Size of blocks' elements before coarsening, relative to the usual one.
+    pub size: f64,
     /// Whether edges are divided at the boundary where another mesh would have them from the layout on.
     pub sooner: bool,
 }
 
-/// Starts tried: the field asked for and the other one, on the usual base mesh; elements for fewer edges, divided at the
-/// boundary; and both fields on the next finer base mesh.
+/// Starts that [`Effort::Best`] compares; what comes after them is for domains where none of them is good.
+const COMPARED: usize = 4;
+
+/// Starts tried: the field asked for and the other one, each with usual and with finer blocks; elements for fewer edges,
+/// divided at the boundary; and both fields with finer blocks on the next finer base mesh.
 fn starts(options: &Options) -> Vec<Start> {
     let other = match options.field {
         FieldMethod::Diffused => FieldMethod::Harmonic,
         FieldMethod::Harmonic => FieldMethod::Diffused,
     };
-    let finer: &[usize] = if options.base_triangulation.is_some() { &[0] } else { &[0, 1] };
-    let both =
-        |finer: &usize| [options.field, other].map(|field| Start { field, finer: *finer, sooner: false });
-    let mut starts: Vec<Start> = finer.iter().flat_map(both).collect();
-    starts.insert(2, Start { sooner: true, ..starts[0] });
+    let [own, other] =
+        [options.field, other].map(|field| Start { field, finer: 0, size: 1.0, sooner: false });
+    let finer_blocks = |start| Start { size: FINER_BLOCKS, ..start };
+    let finer_base = |start| Start { finer: 1, ..finer_blocks(start) };
+    let mut starts = vec![own, finer_blocks(own), other, finer_blocks(other), Start { sooner: true, ..own }];
+    if options.base_triangulation.is_none() {
+        starts.extend([own, other].map(finer_base));
+    }
     starts
 }
 
 /// What meshes are compared by. Better is less, in this order; shapes that differ by rounding are equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Rank {
+    /// How far the poorest element is below what counts as bad.
+    bad: i64,
     /// Symmetries of the domain that the mesh has not.
     missing: usize,
     /// How far the poorest element is below what counts as poor.
@@ -63,6 +77,7 @@ impl Rank {
         let in_ties = |x: f64| (x / ORDER_TIE).round() as i64;
         let [least, ceiling] = shape(stages);
         Rank {
+            bad: in_ties(BAD * ceiling - least).max(0),
             missing: stages.symmetry.map_or(0, |s| s.domain.order().saturating_sub(s.mesh.order())),
             poor: in_ties(POOR * ceiling - least).max(0),
             elements: mesh.elements.len(),
@@ -81,8 +96,7 @@ struct Made {
 impl Made {
     /// Whether the poorest element is not bad.
     fn is_fair(&self) -> bool {
-        let [least, ceiling] = shape(&self.stages);
-        least >= BAD * ceiling
+        self.rank.bad == 0
     }
 
     /// Whether no other start is worth its time.
@@ -115,15 +129,17 @@ pub(super) fn best_of_starts(
     stages: &mut Stages,
 ) -> Result<HighOrderMesh> {
     let starts = starts(options);
-    let count = if options.effort == Effort::Best { starts.len() as f64 } else { 1.0 };
+    let count = if options.effort == Effort::Best { COMPARED as f64 } else { 1.0 };
     let mut best: Option<Made> = None;
     let mut failed: Option<(Error, Stages)> = None;
     let mut seconds = [0.0; 9];
     for (k, start) in starts.into_iter().enumerate() {
+        if k >= COMPARED && best.as_ref().is_some_and(|best| best.rank.poor == 0) {
+            break;
+        }
         if start.sooner {
-            let fair = best.as_ref().is_some_and(|best| best.rank.poor == 0);
             let known = best.as_ref().map(|best| &best.stages).or(failed.as_ref().map(|failed| &failed.1));
-            if fair || !known.is_some_and(|stages| is_another(options, stages)) {
+            if !known.is_some_and(|stages| is_another(options, stages)) {
                 continue;
             }
         }

@@ -3,7 +3,7 @@
 mod bar;
 mod part;
 
-use super::aim;
+use super::blocks::Wanted;
 use super::finish::{follow_waves, MOST_FOLLOWING};
 use super::rounds::{note, Refined};
 use super::smooth_edges::smooth_edges;
@@ -48,6 +48,7 @@ pub(super) struct Symmetrised {
 pub(super) struct Setting<'a> {
     pub options: &'a Options,
     pub tolerances: &'a Tolerances,
+    pub wanted: &'a Wanted,
 }
 
 /// The symmetries of `boundary` that a mesh shall have. Sizes and base meshes of the caller's know nothing of them.
@@ -100,7 +101,7 @@ pub(super) fn proven(
         boundary,
         symmetries: found.elements.iter().map(|e| &group.elements[*e]).collect(),
     };
-    let Setting { options, tolerances } = setting;
+    let Setting { options, tolerances, .. } = setting;
     let average_of = |mesh: QuadMesh| {
         averaged(&mesh, boundary, group).filter(|own| own.elements == found.elements).map(|own| own.mesh)
     };
@@ -138,7 +139,7 @@ pub(super) fn symmetrise(
     watch: &mut Watch,
     stages: &mut Stages,
 ) -> Result<(Symmetrised, Option<Asymmetry>)> {
-    let optimiser = Optimiser::new(boundary, setting.options.order, Some(aim(&setting.tolerances.first)));
+    let optimiser = Optimiser::new(boundary, setting.options.order, Some(setting.wanted.tolerance));
     let quality = optimiser.quality(&direct.coarse);
     let bar = Bar::of(&quality, setting.options, boundary);
     let mut best = Symmetrised { mesh: direct.coarse.clone(), elements: vec![0] };

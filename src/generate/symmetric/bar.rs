@@ -1,7 +1,7 @@
 //! What a symmetric mesh must not fall short of.
 
 use crate::domain::Boundary;
-use crate::generate::TOLERANCE_AIM;
+use crate::generate::share_aimed_at;
 use crate::mesh::scaled_jacobian_ceiling;
 use crate::options::Options;
 use crate::smooth::Quality;
@@ -35,7 +35,7 @@ impl Bar {
         Bar {
             // Not below what coarsening keeps to, either.
             scaled_jacobian: (LEAST_QUALITY * least).max(floor.min(least)),
-            error_ratio: direct.error_ratio.max(1.0 / TOLERANCE_AIM),
+            error_ratio: direct.error_ratio.max(1.0 / share_aimed_at(options.order)),
             direct: direct.elements.len(),
             elements: (MOST_ELEMENTS * direct.elements.len() as f64 + MORE_ELEMENTS)
                 .min(options.max_elements as f64),

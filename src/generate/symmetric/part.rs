@@ -55,15 +55,7 @@ pub(super) fn part_mesh(
     let mut result = Err(Error::Cancelled);
     for attempt in 1..=PART_ATTEMPTS {
         own.begin_attempt(attempt);
-        result = steps_1_to_9(
-            boundary,
-            None,
-            options,
-            &setting.tolerances.first,
-            &mut request,
-            &mut watch,
-            &mut own,
-        );
+        result = steps_1_to_9(boundary, None, options, setting.wanted, &mut request, &mut watch, &mut own);
         if !matches!(result, Err(Error::Layout { .. } | Error::InvalidElement { .. })) {
             break;
         }
