@@ -8,11 +8,17 @@ use crate::numerics::Point;
 /// Distance of a line's ends along the region, by the region's width there, above which it is aslant: about 27° off.
 const ASLANT: f64 = 0.5;
 
+/// Farthest that a junction's foot on the other side is looked for, by share of the sides' lengths: around a ring the
+/// nearest point of one shortly after the start may lie shortly before the end.
+const FARTHEST: f64 = 0.5;
+
 /// A junction inside a side: its place in edges and in length from the side's start, and the number of the side's
 /// arcs before it.
 struct Pinned {
     index: u32,
     run: f64,
+    /// The same length by the side's.
+    share: f64,
     arcs: usize,
     point: Point,
 }
@@ -40,9 +46,9 @@ fn across(layout: &BlockLayout, lengths: &Lengths, region: &Region, s: usize) ->
     let [our_line, their_line] = [&one, &other].map(|arcs| line(layout, arcs));
     let mut demands = Vec::new();
     for a in &ours {
-        let (foot_a, wide_a) = foot(&their_line, a.point);
+        let (foot_a, wide_a) = foot(&their_line, a);
         for b in &theirs {
-            let (foot_b, wide_b) = foot(&our_line, b.point);
+            let (foot_b, wide_b) = foot(&our_line, b);
             let apart = 0.5 * (a.run - foot_b + foot_a - b.run);
             let wide = 0.5 * (wide_a + wide_b);
             // The one further on has to come later in edges as well.
@@ -82,13 +88,15 @@ fn pinned(layout: &BlockLayout, lengths: &Lengths, side: &[SideArc]) -> Vec<Pinn
     let mut found = Vec::new();
     for (k, arc) in side.iter().enumerate().take(side.len().saturating_sub(1)) {
         index += lengths.arcs[arc.arc as usize];
-        run += layout.arcs[arc.arc as usize].points.windows(2).map(|p| (p[1] - p[0]).norm()).sum::<f64>();
+        run += length(&layout.arcs[arc.arc as usize].points);
         let head = layout.arcs[arc.arc as usize].nodes[usize::from(arc.forward)];
         let node = &layout.nodes[head as usize];
         if node.kind == NodeKind::Junction {
-            found.push(Pinned { index, run, arcs: k + 1, point: node.point });
+            found.push(Pinned { index, run, share: run, arcs: k + 1, point: node.point });
         }
     }
+    let whole = length(&line(layout, side));
+    found.iter_mut().for_each(|own| own.share /= whole);
     found
 }
 
@@ -105,19 +113,27 @@ fn line(layout: &BlockLayout, side: &[SideArc]) -> Vec<Point> {
     points
 }
 
-/// The place, in length from the start, of a polyline's point nearest to `p`, and how far it is.
-fn foot(line: &[Point], p: Point) -> (f64, f64) {
+fn length(line: &[Point]) -> f64 {
+    line.windows(2).map(|p| (p[1] - p[0]).norm()).sum()
+}
+
+/// The place, in length from the start, of a polyline's point nearest to `own`, and how far it is.
+fn foot(line: &[Point], own: &Pinned) -> (f64, f64) {
+    let whole = length(line);
+    let [first, last] = [-1.0, 1.0].map(|side| (own.share + side * FARTHEST) * whole);
     let (mut run, mut best) = (0.0, (0.0, f64::INFINITY));
     for ends in line.windows(2) {
         let d = ends[1] - ends[0];
-        let length = d.norm();
-        let share =
-            if length > 0.0 { ((p - ends[0]).dot(&d) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
-        let far = (p - (ends[0] + d * share)).norm();
-        if far < best.1 {
-            best = (run + share * length, far);
+        let long = d.norm();
+        if run + long >= first && run <= last {
+            let share = if long > 0.0 { (own.point - ends[0]).dot(&d) / (long * long) } else { 0.0 };
+            let share = share.clamp(0.0, 1.0);
+            let far = (own.point - (ends[0] + d * share)).norm();
+            if far < best.1 {
+                best = (run + share * long, far);
+            }
         }
-        run += length;
+        run += long;
     }
     best
 }
