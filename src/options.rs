@@ -49,8 +49,8 @@ pub enum Effort {
     /// What is removed is smoothed around there as far as it takes.
     #[default]
     Default,
-    /// The best of four meshes, from both cross fields and two base meshes: about four times the time, for about 6 %
-    /// fewer elements. [`Options::field`] says with which it begins.
+    /// The best of four meshes, from both cross fields, each with usual and with finer blocks: about four times the time,
+    /// for about 6 % fewer elements. [`Options::field`] says with which it begins.
     Best,
 }
 

@@ -1,7 +1,7 @@
-//! Several meshes of one domain, of which the best is kept: all of them for
+//! Several meshes of one domain, of which the best is kept: four for
 //! [`Effort::Best`](crate::options::Effort::Best), else more than one only where the first has a poor element or
 //! failed. What a mesh comes to hangs on decisions that are nearly ties; poor elements mostly on the layout, which
-//! another field lays out anew.
+//! another field lays out anew, and on blocks that are too long for their bends.
 
 use super::one_mesh;
 use super::tighten::{Tolerances, DIVIDED};
@@ -75,7 +75,7 @@ struct Rank {
 impl Rank {
     fn of(mesh: &HighOrderMesh, stages: &Stages) -> Self {
         let in_ties = |x: f64| (x / ORDER_TIE).round() as i64;
-        let [least, ceiling] = shape(stages);
+        let [least, ceiling] = shape(mesh, stages);
         Rank {
             bad: in_ties(BAD * ceiling - least).max(0),
             missing: stages.symmetry.map_or(0, |s| s.domain.order().saturating_sub(s.mesh.order())),
@@ -108,9 +108,10 @@ impl Made {
     }
 }
 
-/// The least scaled Jacobian of a run's mesh, and the domain's best possible one.
-fn shape(stages: &Stages) -> [f64; 2] {
-    let least = stages.rounds.last().map_or(0.0, |round| round.scaled_jacobian);
+/// The least scaled Jacobian of a run's mesh, and the domain's best possible one. Where the rounds took samples, the
+/// finished mesh was searched.
+fn shape(mesh: &HighOrderMesh, stages: &Stages) -> [f64; 2] {
+    let least = mesh.scaled_jacobian.iter().copied().fold(f64::INFINITY, f64::min);
     [least, stages.boundary.as_ref().map_or(1.0, scaled_jacobian_ceiling)]
 }
 
