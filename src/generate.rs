@@ -25,6 +25,7 @@ use crate::stages::Stages;
 use blocks::Wanted;
 use finish::Elements;
 use starts::Start;
+use std::sync::Arc;
 use tighten::Tolerances;
 use watch::Watch;
 
@@ -87,9 +88,9 @@ fn one_mesh(domain: &Domain, options: &Options, start: Start, stages: &mut Stage
     // Step 0: boundary, order, tolerance.
     let boundary = watch.run(stages, Stage::Domain, |stages| {
         stages.warnings.extend(domain.warnings.iter().cloned());
-        Boundary::new(domain)
+        Boundary::new(domain).map(Arc::new)
     })?;
-    stages.boundary = Some(boundary.clone());
+    stages.boundary = Some(Arc::clone(&boundary));
     let tolerances = watch.run(stages, Stage::Domain, |_| {
         Tolerances::new(options, &boundary, start.sooner)
             .map_err(|error| error.map_place(|p| boundary.frame.to_caller(p)))
@@ -100,7 +101,7 @@ fn one_mesh(domain: &Domain, options: &Options, start: Start, stages: &mut Stage
 
     let mut given = None;
     if let Some(own) = &options.base_triangulation {
-        let adopt = |_: &mut Stages| base_mesh::adopt(own, domain, &boundary);
+        let adopt = |_: &mut Stages| base_mesh::adopt(own, domain, &boundary).map(Arc::new);
         given = Some(watch.run(stages, Stage::BaseMesh, adopt)?);
     }
     let attempts = if given.is_some() { GIVEN_ATTEMPTS } else { ATTEMPTS };
@@ -155,7 +156,7 @@ fn one_mesh(domain: &Domain, options: &Options, start: Start, stages: &mut Stage
 
 fn steps_1_to_9(
     boundary: &Boundary,
-    given: Option<&Triangulation>,
+    given: Option<&Arc<Triangulation>>,
     options: &Options,
     wanted: &Wanted,
     request: &mut base_mesh::Request,

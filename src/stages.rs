@@ -8,6 +8,7 @@ use crate::mesh::QuadMesh;
 use crate::progress::Stage;
 use crate::separatrices::Separatrix;
 use crate::singularities::{CornerFan, Singularity};
+use std::sync::Arc;
 
 /// One round of steps 7 and 8: what subdivision, smoothing and coarsening left.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,11 +73,11 @@ pub struct SymmetryReport {
 /// Results of the stages, in the canonical frame; `None` or empty where generation did not come that far.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Stages {
-    pub boundary: Option<Boundary>,
+    pub boundary: Option<Arc<Boundary>>,
     /// `None`: not looked for ([`Options::symmetry`](crate::Options::symmetry)).
     pub symmetry: Option<SymmetryReport>,
-    pub triangulation: Option<Triangulation>,
-    pub cross_field: Option<CrossField>,
+    pub triangulation: Option<Arc<Triangulation>>,
+    pub cross_field: Option<Arc<CrossField>>,
     pub singularities: Vec<Singularity>,
     pub corners: Vec<CornerFan>,
     pub separatrices: Vec<Separatrix>,

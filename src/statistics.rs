@@ -75,7 +75,7 @@ impl Statistics {
     pub fn new(stages: &Stages, result: &Result<HighOrderMesh>, total_seconds: f64) -> Self {
         let mesh = result.as_ref().ok();
         let error = result.as_ref().err();
-        let boundary = stages.boundary.as_ref();
+        let boundary = stages.boundary.as_deref();
         let after = |stage: Stage| stages.reached.is_some_and(|reached| reached >= stage);
         Statistics {
             status: error.map_or("ok", |e| e.name()),

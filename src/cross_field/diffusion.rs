@@ -11,49 +11,51 @@ use crate::numerics::{cross, NONE};
 use crate::options::FieldMethod;
 
 /// Stiffness and lumped mass of linear elements.
-struct Elements {
-    /// Entries (i, j, K_ij) with i > j off the diagonal, and the diagonal; nine in a row of each triangle.
-    stiffness: Vec<Entry>,
+struct Elements<'a> {
+    triangles: &'a [[u32; 3]],
+    /// For each triangle and corner what joins the two others: half the cotangent of its angle.
+    weights: Vec<[f64; 3]>,
     mass: Vec<f64>,
 }
 
-impl Elements {
-    fn new(mesh: &Triangulation) -> Elements {
-        let mut stiffness = Vec::with_capacity(9 * mesh.triangles.len());
+impl<'a> Elements<'a> {
+    fn new(mesh: &'a Triangulation) -> Self {
         let mut mass = vec![0.0; mesh.vertices.len()];
+        let mut weights = Vec::with_capacity(mesh.triangles.len());
         for corners in &mesh.triangles {
             let p = corners.map(|v| mesh.vertices[v as usize].point);
             let double = cross(p[1] - p[0], p[2] - p[0]);
-            for i in 0..3 {
-                let (a, b) = (corners[(i + 1) % 3] as usize, corners[(i + 2) % 3] as usize);
-                mass[corners[i] as usize] += double / 6.0;
-                // Half the cotangent of the angle at corner i; the floor keeps a triangle that is
-                // flat to rounding from swallowing the rest.
+            corners.iter().for_each(|v| mass[*v as usize] += double / 6.0);
+            weights.push([0, 1, 2].map(|i| {
+                // The floor keeps a triangle that is flat to rounding from swallowing the rest.
                 let (d, e) = (p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]);
-                let weight = 0.5 * d.dot(&e) / double.max(1e-12 * (d.norm_squared() + e.norm_squared()));
-                stiffness.extend([(a, a, weight), (b, b, weight), (a.max(b), a.min(b), -weight)]);
-            }
+                0.5 * d.dot(&e) / double.max(1e-12 * (d.norm_squared() + e.norm_squared()))
+            }));
         }
-        Elements { stiffness, mass }
+        Elements { triangles: &mesh.triangles, weights, mass }
     }
-}
 
-impl Elements {
-    /// The same with the stiffness of each triangle multiplied by its diffusion time.
-    fn with_times(&self, times: &[f64]) -> Elements {
-        let scaled = |(chunk, time): (&[Entry], &f64)| {
-            chunk.iter().map(|&(i, j, k)| (i, j, k * time)).collect::<Vec<_>>()
-        };
-        Elements {
-            stiffness: self.stiffness.chunks(9).zip(times).flat_map(scaled).collect(),
-            mass: self.mass.clone(),
+    /// Multiplies the stiffness of each triangle by its diffusion time.
+    fn scale(&mut self, times: &[f64]) {
+        for (weights, time) in self.weights.iter_mut().zip(times) {
+            *weights = weights.map(|w| w * time);
         }
+    }
+
+    /// Entries (i, j, K_ij) with i > j off the diagonal, and the diagonal; nine in a row of each triangle.
+    fn stiffness(&self) -> impl Iterator<Item = Entry> + '_ {
+        self.triangles.iter().zip(&self.weights).flat_map(|(corners, weights)| {
+            [0, 1, 2].into_iter().flat_map(|i| {
+                let (a, b, weight) = (corners[(i + 1) % 3], corners[(i + 2) % 3], weights[i]);
+                [(a, a, weight), (b, b, weight), (a.max(b), a.min(b), -weight)]
+            })
+        })
     }
 }
 
 /// A linear system on the inner vertices: `mass_share` M + K.
 struct System<'a> {
-    elements: &'a Elements,
+    elements: &'a Elements<'a>,
     mass_share: f64,
     unknown: &'a [u32],
     /// Vertex of each unknown.
@@ -62,17 +64,18 @@ struct System<'a> {
 }
 
 impl<'a> System<'a> {
-    fn new(elements: &'a Elements, mass_share: f64, unknown: &'a [u32], inner: &'a [u32]) -> Result<Self> {
-        let mut entries: Vec<Entry> = Vec::with_capacity(elements.stiffness.len() + inner.len());
-        for &(a, b, k) in &elements.stiffness {
-            let (i, j) = (unknown[a], unknown[b]);
-            if i != NONE && j != NONE {
-                entries.push((i.max(j) as usize, i.min(j) as usize, k));
-            }
-        }
-        let diagonal = inner.iter().enumerate().map(|(i, &v)| (i, i, mass_share * elements.mass[v as usize]));
-        entries.extend(diagonal);
-        let factors = Cholesky::new(inner.len(), &entries).map_err(linear)?;
+    fn new(
+        elements: &'a Elements<'a>,
+        mass_share: f64,
+        unknown: &'a [u32],
+        inner: &'a [u32],
+    ) -> Result<Self> {
+        let stiffness = elements.stiffness().filter_map(|(a, b, k)| {
+            let (i, j) = (unknown[a as usize], unknown[b as usize]);
+            (i != NONE && j != NONE).then(|| (i.max(j), i.min(j), k))
+        });
+        let diagonal = (0..).zip(inner).map(|(i, &v)| (i, i, mass_share * elements.mass[v as usize]));
+        let factors = Cholesky::new(inner.len(), stiffness.chain(diagonal)).map_err(linear)?;
         Ok(System { elements, mass_share, unknown, inner, factors })
     }
 
@@ -84,8 +87,8 @@ impl<'a> System<'a> {
             .iter()
             .map(|&v| scaled(u[v as usize], self.mass_share * self.elements.mass[v as usize]))
             .collect();
-        for &(a, b, k) in &self.elements.stiffness {
-            for (row, column) in [(a, b), (b, a)] {
+        for (a, b, k) in self.elements.stiffness() {
+            for [row, column] in [[a, b], [b, a]].map(|pair| pair.map(|v| v as usize)) {
                 if self.unknown[row] != NONE && self.unknown[column] == NONE {
                     let known = scaled(u[column], k);
                     let r = &mut right[self.unknown[row] as usize];
@@ -131,7 +134,7 @@ pub(super) fn solve(
             inner.push(v);
         }
     }
-    let elements = Elements::new(mesh);
+    let mut elements = Elements::new(mesh);
     System::new(&elements, 0.0, &unknown, &inner)?.advance(&mut u)?;
     if method == FieldMethod::Diffused {
         renormalise(&mut u, &inner);
@@ -144,8 +147,8 @@ pub(super) fn solve(
             let mean = t.iter().map(|&v| thickness[v as usize]).sum::<f64>() / 3.0;
             DIFFUSION_TIME * mean * mean
         };
-        let diffusing = elements.with_times(&mesh.triangles.iter().map(time).collect::<Vec<_>>());
-        let step = System::new(&diffusing, 1.0, &unknown, &inner)?;
+        elements.scale(&mesh.triangles.iter().map(time).collect::<Vec<_>>());
+        let step = System::new(&elements, 1.0, &unknown, &inner)?;
         for _ in 0..DIFFUSION_STEPS {
             step.advance(&mut u)?;
             renormalise(&mut u, &inner);

@@ -86,7 +86,9 @@ fn cubic(a: &Sample, b: &Sample) -> [[f64; 2]; 4] {
 }
 
 impl From<Vec<Sample>> for ChainTable {
-    fn from(samples: Vec<Sample>) -> Self {
+    fn from(mut samples: Vec<Sample>) -> Self {
+        // The boundary is kept to the end.
+        samples.shrink_to_fit();
         let intervals = samples.len().saturating_sub(1);
         let count = CELLS_PER_INTERVAL * intervals;
         let length = samples.last().map_or(0.0, |x| x.s);

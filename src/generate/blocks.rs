@@ -14,6 +14,7 @@ use crate::refine::least_pieces;
 use crate::separatrices;
 use crate::singularities::{self, CornerFan, Singularity};
 use crate::stages::Stages;
+use std::sync::Arc;
 
 /// Rounds of local refinement that the gate may ask for on one base mesh size.
 const GATE_ROUNDS: usize = 6;
@@ -33,8 +34,8 @@ const FINER: f64 = 0.72;
 
 /// Steps 1 to 3.
 pub(super) struct Field {
-    pub mesh: Triangulation,
-    pub cross: CrossField,
+    pub mesh: Arc<Triangulation>,
+    pub cross: Arc<CrossField>,
     pub singularities: Vec<Singularity>,
     pub corners: Vec<CornerFan>,
 }
@@ -61,7 +62,7 @@ pub(super) fn refine(request: &mut Request, boundary: &Boundary) {
 /// mesh, if there is one, without refinement. `absorbing`: see [`CornerRule`].
 pub(super) fn field(
     boundary: &Boundary,
-    given: Option<&Triangulation>,
+    given: Option<&Arc<Triangulation>>,
     options: &Options,
     absorbing: bool,
     request: &mut Request,
@@ -79,14 +80,14 @@ pub(super) fn field(
     let mut round = 0;
     loop {
         let mesh = watch.run(stages, Stage::BaseMesh, |_| match given {
-            Some(mesh) => Ok(mesh.clone()),
-            None => base_mesh::triangulate(boundary, request),
+            Some(mesh) => Ok(Arc::clone(mesh)),
+            None => base_mesh::triangulate(boundary, request).map(Arc::new),
         })?;
-        stages.triangulation = Some(mesh.clone());
+        stages.triangulation = Some(Arc::clone(&mesh));
         let cross = watch.run(stages, Stage::CrossField, |_| {
-            cross_field::solve_with_corners(&mesh, boundary, options.field, rule)
+            cross_field::solve_with_corners(&mesh, boundary, options.field, rule).map(Arc::new)
         })?;
-        stages.cross_field = Some(cross.clone());
+        stages.cross_field = Some(Arc::clone(&cross));
         let found = singularities::find(&mesh, boundary, &cross);
         let known = found.as_ref().map_or(&[][..], |(singularities, _)| singularities);
         let rounds = if mesh.triangles.len() > MANY { GATE_ROUNDS_OF_MANY } else { GATE_ROUNDS };

@@ -112,7 +112,7 @@ impl Made {
 /// finished mesh was searched.
 fn shape(mesh: &HighOrderMesh, stages: &Stages) -> [f64; 2] {
     let least = mesh.scaled_jacobian.iter().copied().fold(f64::INFINITY, f64::min);
-    [least, stages.boundary.as_ref().map_or(1.0, scaled_jacobian_ceiling)]
+    [least, stages.boundary.as_deref().map_or(1.0, scaled_jacobian_ceiling)]
 }
 
 /// Whether a start that divides edges sooner is another one than what led to `stages`.

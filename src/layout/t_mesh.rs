@@ -122,7 +122,8 @@ pub fn build(
         let stops =
             s.stops.iter().map(|stop| (ends[stop.stem as usize][1], stop.segment as usize, stop.point));
         for (node, segment, point) in stops.chain([(ends[i][1], last_point, s.points[last_point])]) {
-            let mut points = vec![start.2];
+            let mut points = Vec::with_capacity(segment.saturating_sub(start.1) + 2);
+            points.push(start.2);
             points.extend_from_slice(s.points.get(start.1 + 1..=segment).unwrap_or(&[]));
             if points.last() != Some(&point) || points.len() == 1 {
                 points.push(point);

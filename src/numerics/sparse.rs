@@ -12,21 +12,22 @@ use faer::{Mat, Side};
 #[derive(Debug, Clone)]
 pub struct Cholesky {
     size: usize,
-    factors: Llt<usize, f64>,
+    factors: Llt<u32, f64>,
 }
 
 /// An entry (row, column, value) of the lower triangle; entries of the same place are added up.
-pub type Entry = (usize, usize, f64);
+pub type Entry = (u32, u32, f64);
 
 impl Cholesky {
     /// Factors the `size` × `size` matrix whose lower triangle (row ≥ column) is the sum of `entries`.
     ///
     /// `Err` says in words what is wrong: an index out of range, an entry above the diagonal, a value
     /// that is not finite, a matrix that is not positive definite, or too little memory.
-    pub fn new(size: usize, entries: &[Entry]) -> Result<Cholesky, String> {
-        let mut triplets = Vec::with_capacity(entries.len());
-        for &(row, column, value) in entries {
-            if row >= size || column > row {
+    pub fn new(size: usize, entries: impl IntoIterator<Item = Entry>) -> Result<Cholesky, String> {
+        let entries = entries.into_iter();
+        let mut triplets = Vec::with_capacity(entries.size_hint().0);
+        for (row, column, value) in entries {
+            if row as usize >= size || column > row {
                 return Err(format!("entry ({row}, {column}) is outside the lower triangle of size {size}"));
             }
             if !value.is_finite() {
@@ -36,6 +37,8 @@ impl Cholesky {
         }
         let matrix = SparseColMat::try_new_from_triplets(size, size, &triplets)
             .map_err(|e| format!("sparse matrix: {e:?}"))?;
+        // Of large systems either takes as much room as the factors.
+        drop(triplets);
         let symbolic =
             SymbolicLlt::try_new(matrix.symbolic(), Side::Lower).map_err(|e| format!("ordering: {e:?}"))?;
         let factors = Llt::try_new_with_symbolic(symbolic, matrix.as_ref(), Side::Lower)
@@ -68,7 +71,7 @@ mod tests {
     use super::*;
 
     /// −u″ on n points: tridiagonal (2, −1).
-    fn second_difference(n: usize) -> Vec<Entry> {
+    fn second_difference(n: u32) -> Vec<Entry> {
         let mut entries = Vec::new();
         for i in 0..n {
             // The diagonal in two halves: repeated entries have to add up.
@@ -83,7 +86,7 @@ mod tests {
     #[test]
     fn solves_two_right_hand_sides() {
         let n = 500;
-        let a = Cholesky::new(n, &second_difference(n)).unwrap();
+        let a = Cholesky::new(n, second_difference(n as u32)).unwrap();
         let exact: Vec<[f64; 2]> = (0..n).map(|i| [(i as f64 * 0.1).sin(), i as f64]).collect();
         let at = |i: isize, k: usize| match usize::try_from(i).ok().filter(|&i| i < n) {
             Some(i) => exact[i][k],
@@ -96,15 +99,15 @@ mod tests {
         for (x, e) in x.iter().zip(&exact) {
             assert!((x[0] - e[0]).abs() < 1e-8 && (x[1] - e[1]).abs() < 1e-6, "{x:?} {e:?}");
         }
-        assert_eq!(x, Cholesky::new(n, &second_difference(n)).unwrap().solve(&b).unwrap());
+        assert_eq!(x, Cholesky::new(n, second_difference(n as u32)).unwrap().solve(&b).unwrap());
     }
 
     #[test]
     fn refuses_what_it_cannot_factor() {
-        assert!(Cholesky::new(2, &[(0, 0, 1.0), (1, 1, -1.0)]).is_err());
-        assert!(Cholesky::new(2, &[(0, 0, 1.0), (0, 1, 1.0)]).is_err());
-        assert!(Cholesky::new(1, &[(0, 0, f64::NAN)]).is_err());
-        assert!(Cholesky::new(1, &[(0, 0, 1.0)]).unwrap().solve(&[[1.0], [2.0]]).is_err());
-        assert_eq!(Cholesky::new(0, &[]).unwrap().solve::<1>(&[]).unwrap(), Vec::<[f64; 1]>::new());
+        assert!(Cholesky::new(2, [(0, 0, 1.0), (1, 1, -1.0)]).is_err());
+        assert!(Cholesky::new(2, [(0, 0, 1.0), (0, 1, 1.0)]).is_err());
+        assert!(Cholesky::new(1, [(0, 0, f64::NAN)]).is_err());
+        assert!(Cholesky::new(1, [(0, 0, 1.0)]).unwrap().solve(&[[1.0], [2.0]]).is_err());
+        assert_eq!(Cholesky::new(0, []).unwrap().solve::<1>(&[]).unwrap(), Vec::<[f64; 1]>::new());
     }
 }

@@ -513,6 +513,8 @@ impl<'a> Tracer<'a> {
                         .then(a.1 .1.total_cmp(&b.1 .1))
                         .then(a.2.stem.cmp(&b.2.stem))
                 });
+                // The stages keep them to the end.
+                t.points.shrink_to_fit();
                 let to = t.to.unwrap_or(t.from);
                 let stops = t.stops.into_iter().map(|s| s.2).collect();
                 Separatrix { from: t.from, to, points: t.points, stops }
