@@ -22,8 +22,8 @@ const WORTH: f64 = 2.5;
 /// Elements above which a mesh is kept for its poor element: another takes as long again.
 const MOST_AGAIN: usize = 1500;
 
-/// Size of blocks' elements before coarsening, relative to the usual one, for a start with finer blocks: a bend of many short
-/// elements is smoothed where one of a few long ones folds.
+/// Size of blocks' elements before coarsening, relative to the usual one, for a start with finer blocks: a bend of many
+/// short elements is smoothed where one of a few long ones folds.
 const FINER_BLOCKS: f64 = 0.6;
 
 /// How a mesh is begun.

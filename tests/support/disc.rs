@@ -206,9 +206,9 @@ pub fn stages() -> Stages {
     let mut quads = vec![[0, 1, 2, 3]];
     quads.extend((0..4).map(|k| [k, k + 4, (k + 1) % 4 + 4, (k + 1) % 4]));
     Stages {
-        boundary: Some(boundary()),
-        cross_field: Some(cross_field(&base)),
-        triangulation: Some(base),
+        boundary: Some(boundary().into()),
+        cross_field: Some(cross_field(&base).into()),
+        triangulation: Some(base.into()),
         singularities,
         separatrices,
         quad_layout: Some(QuadLayout {
