@@ -213,12 +213,13 @@ void check(const Example& example, const std::string& folder) {
   // directions in proportion to their length, by up to 7 per cent at 32 x 32 where curvature is large: a
   // first-order part, which Richardson's extrapolation from 64 x 64 takes off.
   const std::vector<double> ours = mesh.quality(QUADREL_MEASURE_SCALED_JACOBIAN);
-  const double small = apart(verdict(mesh, 32, Pieces::Small), ours);
+  // Between 32 places the measure of an element of order 12 varies by more than is allowed for.
+  const double small = apart(verdict(mesh, mesh.order() <= 7 ? 32 : 64, Pieces::Small), ours);
   const std::vector<double> pieces = verdict(mesh, 32, Pieces::Whole), halves = verdict(mesh, 64, Pieces::Whole);
   std::vector<double> extrapolated(ours.size());
   for (std::size_t e = 0; e < ours.size(); ++e) extrapolated[e] = 2 * halves[e] - pieces[e];
   const double limit = apart(extrapolated, ours), coarse = apart(pieces, ours), fine = apart(verdict(mesh, 128, Pieces::Whole), ours);
-  std::printf("%s, order %d: %zu elements; file and memory differ by %.1e, from the mesh by %.1e and %.1e; Verdict's scaled Jacobian on 32 x 32 small pieces by %.2f %%, cut into 32 x 32 by %.2f %%, extrapolated %.2f %%, 128 x 128 by %.2f %%\n",
+  std::printf("%s, order %d: %zu elements; file and memory differ by %.1e, from the mesh by %.1e and %.1e; Verdict's scaled Jacobian on small pieces by %.2f %%, cut into 32 x 32 by %.2f %%, extrapolated %.2f %%, 128 x 128 by %.2f %%\n",
               example.file, example.order, mesh.element_count(), differ, from_file, from_memory, 100 * small, 100 * coarse, 100 * limit, 100 * fine);
   CHECK(small <= 0.02 && limit <= 0.02 && fine <= 0.02 && fine <= 0.35 * coarse + 1e-12);
   CHECK(std::remove(path.c_str()) == 0);
