@@ -130,14 +130,20 @@ fn sampled(domain: &Domain, edge: &MeshEdge) -> (Vec<(f64, f64, Point, Vector)>,
     (points, s)
 }
 
+/// The boundary edges and their nodes.
+fn boundary_edges(mesh: &HighOrderMesh) -> impl Iterator<Item = (&MeshEdge, Vec<Point>)> {
+    mesh.edges.iter().enumerate().filter(|(_, edge)| edge.loop_index != NONE).map(|(e, edge)| {
+        let element = edge.elements[0] as usize;
+        let side = mesh.element_edges[element].iter().position(|x| *x as usize == e).unwrap();
+        (edge, (0..=mesh.order).map(|k| mesh.side_node(element, side, k)).collect())
+    })
+}
+
 /// The largest error of a boundary edge in `norm`, and where.
 fn worst(domain: &Domain, mesh: &HighOrderMesh, norm: Norm) -> (f64, Point) {
     let curve = Interpolation::new(mesh.reference_nodes.clone());
     let mut worst = (0.0, Point::origin());
-    for (e, edge) in mesh.edges.iter().enumerate().filter(|(_, edge)| edge.loop_index != NONE) {
-        let element = edge.elements[0] as usize;
-        let side = mesh.element_edges[element].iter().position(|x| *x as usize == e).unwrap();
-        let nodes: Vec<Point> = (0..=mesh.order).map(|k| mesh.side_node(element, side, k)).collect();
+    for (edge, nodes) in boundary_edges(mesh) {
         let (points, length) = sampled(domain, edge);
         let at: Vec<f64> = points.iter().map(|p| 2.0 * p.0 / length - 1.0).collect();
         let (values, slopes) = (curve.matrix(&at), curve.derivative_matrix(&at));
@@ -167,6 +173,15 @@ fn file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/domains").join(name)
 }
 
+/// The mesh and the error that it is allowed, or the typed error.
+fn meshed(domain: &Domain, options: &Options) -> Result<(HighOrderMesh, f64), Error> {
+    let mut stages = Stages::default();
+    let mesh = generate(domain, options, &mut stages)?;
+    let boundary = stages.boundary.expect("a boundary");
+    let allowed = BoundaryTolerance::new(options, &boundary).in_caller_frame(&boundary.frame).value;
+    Ok((mesh, allowed))
+}
+
 /// Error divided by the tolerance and the number of elements, or the typed error.
 fn run(
     domain: &Domain,
@@ -178,11 +193,8 @@ fn run(
     let end = Instant::now() + limit;
     let progress = Progress::new(move |_, _| Instant::now() < end);
     let tolerance = Tolerance::Relative(relative);
-    let options = Options { order, norm, tolerance, progress, ..Options::default() };
-    let mut stages = Stages::default();
-    let mesh = generate(domain, &options, &mut stages)?;
-    let boundary = stages.boundary.expect("a boundary");
-    let allowed = BoundaryTolerance::new(&options, &boundary).in_caller_frame(&boundary.frame).value;
+    let (mesh, allowed) =
+        meshed(domain, &Options { order, norm, tolerance, progress, ..Options::default() })?;
     Ok((worst(domain, &mesh, norm).0 / allowed, mesh.elements.len()))
 }
 
@@ -214,10 +226,7 @@ fn worst_by_a_plain_rule(domain: &Domain, mesh: &HighOrderMesh) -> f64 {
     let rule = GaussLegendre::new(mesh.order + 6);
     let (values, slopes) = (curve.matrix(&rule.nodes), curve.derivative_matrix(&rule.nodes));
     let mut worst = 0.0f64;
-    for (e, edge) in mesh.edges.iter().enumerate().filter(|(_, edge)| edge.loop_index != NONE) {
-        let element = edge.elements[0] as usize;
-        let side = mesh.element_edges[element].iter().position(|x| *x as usize == e).unwrap();
-        let nodes: Vec<Point> = (0..=mesh.order).map(|k| mesh.side_node(element, side, k)).collect();
+    for (edge, nodes) in boundary_edges(mesh) {
         let (points, _) = sampled(domain, edge);
         let mut sum = 0.0;
         for (i, weight) in rule.weights.iter().enumerate() {
@@ -240,10 +249,7 @@ fn worst_by_a_plain_rule(domain: &Domain, mesh: &HighOrderMesh) -> f64 {
 fn edges_of_high_order_keep_the_tolerance_by_a_plain_rule_too() {
     let domain = input::read(&file("hohq/LakeSuperior.control"), None).unwrap().domain;
     let options = Options { order: 12, tolerance: Tolerance::Relative(1e-5), ..Options::default() };
-    let mut stages = Stages::default();
-    let mesh = generate(&domain, &options, &mut stages).unwrap();
-    let boundary = stages.boundary.expect("a boundary");
-    let allowed = BoundaryTolerance::new(&options, &boundary).in_caller_frame(&boundary.frame).value;
+    let (mesh, allowed) = meshed(&domain, &options).unwrap();
     let ratio = worst_by_a_plain_rule(&domain, &mesh) / allowed;
     assert!(ratio <= 1.0 && ratio > 0.5, "{ratio} times the tolerance");
 }

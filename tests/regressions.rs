@@ -22,6 +22,13 @@ fn mesh(file: &str) -> (usize, Duration) {
     (elements, time)
 }
 
+/// Elements that are few enough and none poor.
+fn assert_shape(file: &str, least: f64, most: usize) {
+    let (elements, scaled_jacobian, _) = shaped(file);
+    assert!(scaled_jacobian > least, "{file}: scaled Jacobian {scaled_jacobian}");
+    assert!(elements <= most, "{file}: {elements} elements");
+}
+
 /// Two windows of one closed chain took room from each other without end: one placed the whole chain from its
 /// first vertex, the other from another.
 #[test]
@@ -59,9 +66,7 @@ fn a_cut_of_a_ring_keeps_to_the_near_border() {
 /// could straighten afterwards: a scaled Jacobian of 0.41.
 #[test]
 fn junctions_far_apart_on_two_sides_of_a_stroke_are_not_joined() {
-    let (elements, least, _) = shaped("glyphs/NotoSansJavanese/ua98e.svg");
-    assert!(least > 0.7, "scaled Jacobian {least}");
-    assert!(elements <= 40, "{elements} elements");
+    assert_shape("glyphs/NotoSansJavanese/ua98e.svg", 0.7, 40);
 }
 
 /// The same around a ring: the point across from a junction right behind the cut was found right before it, a whole
@@ -69,17 +74,13 @@ fn junctions_far_apart_on_two_sides_of_a_stroke_are_not_joined() {
 /// base mesh).
 #[test]
 fn lines_across_a_ring_are_not_wound_around_its_hole() {
-    let (elements, least, _) = shaped("glyphs/AmiriQuran/u06e0.svg");
-    assert!(least > 0.9, "scaled Jacobian {least}");
-    assert!(elements <= 16, "{elements} elements");
+    assert_shape("glyphs/AmiriQuran/u06e0.svg", 0.9, 16);
 }
 
 /// Two long blocks along a bend were smoothed into a fold that nothing undid (0.55): finer blocks are not.
 #[test]
 fn finer_blocks_are_tried_where_an_element_is_poor() {
-    let (elements, least, _) = shaped("glyphs/NotoSansCJK/ubf54.svg");
-    assert!(least > 0.8, "scaled Jacobian {least}");
-    assert!(elements <= 50, "{elements} elements");
+    assert_shape("glyphs/NotoSansCJK/ubf54.svg", 0.8, 50);
 }
 
 /// A neck of three thousandths between two corners, in one line with the wall beside it: the edge across it joins two

@@ -84,6 +84,7 @@ fn across(layout: &BlockLayout, lengths: &Lengths, region: &Region, s: usize) ->
 
 /// The junctions strictly inside a side.
 fn pinned(layout: &BlockLayout, lengths: &Lengths, side: &[SideArc]) -> Vec<Pinned> {
+    let whole = length(&line(layout, side));
     let (mut index, mut run) = (0, 0.0);
     let mut found = Vec::new();
     for (k, arc) in side.iter().enumerate().take(side.len().saturating_sub(1)) {
@@ -92,11 +93,9 @@ fn pinned(layout: &BlockLayout, lengths: &Lengths, side: &[SideArc]) -> Vec<Pinn
         let head = layout.arcs[arc.arc as usize].nodes[usize::from(arc.forward)];
         let node = &layout.nodes[head as usize];
         if node.kind == NodeKind::Junction {
-            found.push(Pinned { index, run, share: run, arcs: k + 1, point: node.point });
+            found.push(Pinned { index, run, share: run / whole, arcs: k + 1, point: node.point });
         }
     }
-    let whole = length(&line(layout, side));
-    found.iter_mut().for_each(|own| own.share /= whole);
     found
 }
 

@@ -37,7 +37,7 @@ impl Cholesky {
         }
         let matrix = SparseColMat::try_new_from_triplets(size, size, &triplets)
             .map_err(|e| format!("sparse matrix: {e:?}"))?;
-        // Of large systems either takes as much room as the factors.
+        // They take about as much room as the factors that come now.
         drop(triplets);
         let symbolic =
             SymbolicLlt::try_new(matrix.symbolic(), Side::Lower).map_err(|e| format!("ordering: {e:?}"))?;
